@@ -35,7 +35,7 @@ def test_a_replay_plots_the_numbers_of_each_species(tmp_path, watch):
         watched.get("hedon.tab('plots')")
         titles = watched.get(TITLES)
         assert titles[0] == "prey: weight of normal food [reward per meal, mean of the living]"
-        assert "predator: weight of prey food [reward per meal, mean of the living]" in titles
+        assert "predator: weight of prey [reward per meal, mean of the living]" in titles
         assert not any("neutral" in title for title in titles)
         for title in ("agents alive [agents]", "mean energy [energy]"):
             assert f"{title} ● prey ● predator" in [" ".join(each.split()) for each in titles]
@@ -79,7 +79,7 @@ def test_each_weight_is_judged_against_the_band_of_drift(run_folder, tmp_path, w
         watched.rest_at(2048)
         watched.until("document.querySelector('.verdict').innerText !== ''")
         said = watched.get(VERDICTS)
-        assert set(said) == {"weight of normal food", "weight of poison food", "weight of action"}
+        assert set(said) == {"weight of normal food", "weight of poison", "weight of action"}
         numbers = [float(each) for each in re.findall(r"-?[\d.]+", said["weight of normal food"])]
         assert numbers == pytest.approx([strayed["w_normal_mean"][-1], -limit, limit], abs=2e-3)
         assert "outside drift" in said["weight of normal food"]

@@ -5,6 +5,10 @@ from collections.abc import Sequence
 from hedon.config.layout import EXTRA
 
 
+_ADJECTIVES = ("normal", "poor", "rich")
+"""Names of kinds of food that want a noun."""
+
+
 def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:
     """What the panel of each weight is called: those that enter the reward, and the first neutral marker.
 
@@ -16,7 +20,7 @@ def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> 
 
 
 def weight_title(name: str) -> str:
-    """What a gene is called: the weight of action, of seeing or smelling something or of a food, or by its name."""
+    """What a gene is called: the weight of action, of a food or another term, of seeing or smelling, or by its name."""
     for ending, said in (("_old", ", when old"), ("_scale", ", power of ten")):
         if name.startswith("w_") and name.endswith(ending):
             return weight_title(name.removesuffix(ending)) + said
@@ -30,4 +34,6 @@ def weight_title(name: str) -> str:
     for start, said in (("see_", "seeing"), ("smell_", "smelling")):
         if what.startswith(start):
             return f"weight of {said} {what.removeprefix(start)}"
-    return f"weight of {what} food" if name.startswith("w_") else f"gene {name}"
+    if what in _ADJECTIVES:
+        what += " food"
+    return f"weight of {what.replace('_', ' ')}" if name.startswith("w_") else f"gene {name}"

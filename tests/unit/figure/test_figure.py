@@ -34,7 +34,7 @@ def test_weights_have_a_panel_per_kind_and_its_points(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=10, worlds=2, food_kinds=("normal", "poison")))
     figure = draw_weights(run.agents(), run.reward_names, run.neutral_names, count=30)
     labels = [axes.get_xlabel() for axes in figure.axes]
-    assert [label for label in labels if label] == ["weight of normal food", "weight of poison food"]
+    assert [label for label in labels if label] == ["weight of normal food", "weight of poison"]
     points = np.asarray(figure.axes[0].collections[0].get_offsets())
     assert len(points) == 60
     last = run.agents().sort("world", "birth_step", "agent_id").group_by("world").tail(30)
@@ -218,6 +218,8 @@ def _without_agents(snapshot: Snapshot) -> Snapshot:
         ("w_action_scale", "weight of action, power of ten"),
         ("w_see_prey", "weight of seeing prey"),
         ("w_smell_prey", "weight of smelling prey"),
+        ("w_prey", "weight of prey"),
+        ("w_near_adult", "weight of near adult"),
         ("g_gamma", "gamma, power of ten"),
         ("set_point", "gene set_point"),
     ],

@@ -106,7 +106,7 @@ def test_poison_is_drawn_in_the_axes_of_the_paper(tmp_path: Path) -> None:
     worlds = read_worlds([open_run(run)])
     _, figure = draw("weights-poison", poison=worlds)
     (axes,) = panels(figure)
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("weight of normal food", "weight of poison food")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("weight of normal food", "weight of poison")
     agents = pl.concat(world.agents for world in worlds)
     points = np.asarray(axes.collections[0].get_offsets())
     assert sorted(points[:, 0]) == pytest.approx(sorted(agents["w_normal"]))
