@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 from hedon.config.layout import EXTRA
 
-
 _ADJECTIVES = ("normal", "poor", "rich")
 """Names of kinds of food that want a noun."""
 
