@@ -1,8 +1,9 @@
-"""The tests that meet the compiler and the interpreter, with each of both: `python tests/matrix.py`.
+"""The tests that meet the compiler, the interpreter and the libraries, with each of them: `python tests/matrix.py`.
 
 For Python 3.11 and 3.13, each with g++ and with Clang: an environment of its own in `build/matrix`, the engine with all
 warnings as errors, then digests, units, and the command line. What is not installed is named and left out. The Clang
-is the first of 15 or newer in the path, else the one of the package `ziglang`.
+is the first of 15 or newer in the path, else the one of the package `ziglang`. Then with the oldest libraries that
+`pyproject.toml` allows.
 """
 
 import os
@@ -22,6 +23,11 @@ from release.wheel import has_python, uv, zig  # noqa: E402
 PYTHONS = ("3.11", "3.13")
 OLDEST_CLANG = 15
 TESTS = ("tests/golden", "tests/machine", "tests/unit", "tests/cli", "tests/contract/test_kernel_agreement.py")
+OF_LIBRARIES = (
+    *(f"tests/unit/{part}" for part in ("analysis", "cli", "config", "figure", "record", "report", "statistic")),
+    *(f"tests/contract/{part}.py" for part in ("test_frozen", "test_resume")),
+    "tests/cli/test_run.py",
+)
 
 
 def clang() -> str:
@@ -48,6 +54,31 @@ def passes(python: str, name: str, compiler: str) -> bool:
     return all(subprocess.run(each, cwd=ROOT, env=environment, check=False).returncode == 0 for each in (sync, test))
 
 
+def passes_with_oldest(python: str) -> bool:
+    """Tests with the oldest libraries that are allowed; what only tests need is new where it takes these."""
+    place = ROOT / "build" / "matrix" / "oldest"
+    program, oldest = place / "env" / "bin" / "python", place / "oldest.txt"
+    environment = os.environ | {"VIRTUAL_ENV": str(place / "env"), "PYTHONPATH": "tests"}
+    environment["PATH"] = f"{program.parent}{os.pathsep}{environment['PATH']}"
+
+    def done(*command: str) -> bool:
+        return subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode == 0
+
+    install = (uv(), "pip", "install", "--quiet", "--python", str(program))
+    if not done(uv(), "venv", "--quiet", "--clear", "--python", python, str(place / "env")):
+        return False
+    if not done(*install, "--resolution", "lowest-direct", f"{ROOT}[rules]"):
+        return False
+    oldest.write_text(subprocess.check_output([uv(), "pip", "freeze", "--python", str(program)], text=True))
+    kept = [line for line in oldest.read_text().splitlines() if not line.startswith("hedon")]
+    oldest.write_text("\n".join(kept))
+    if not done(
+        *install, "--constraint", str(oldest), "hypothesis", "pandas", "psutil", "pyarrow", "pytest", "pytest-xdist"
+    ):
+        return False
+    return done(str(program), "-m", "pytest", "--numprocesses", "auto", *OF_LIBRARIES)
+
+
 def main() -> int:
     """Tries every pair; returns an exit status."""
     compilers = {"g++": shutil.which("g++") or "", "clang": clang()}
@@ -62,6 +93,8 @@ def main() -> int:
             print(f"matrix: Python {python}, {compiler}", flush=True)
             tried += 1
             failed += [] if passes(python, name, compiler) else [f"Python {python} with {name}"]
+    print(f"matrix: Python {PYTHONS[0]}, the oldest libraries", flush=True)
+    failed += [] if passes_with_oldest(PYTHONS[0]) else ["the oldest libraries"]
     print(f"matrix: {tried} of {len(PYTHONS) * len(compilers)} tried, failed: {', '.join(failed) or 'none'}")
     return 1 if failed or not tried else 0
 

@@ -15,7 +15,7 @@ from hedon.experiment.run import run
 from hedon.experiment.simulation import Simulation
 from hedon.record.checkpoint import load_checkpoint
 from hedon.record.folder import checkpoint_paths
-from hedon.record.network import NETWORKS, NetworkError, read_networks
+from hedon.record.network import NETWORKS, NetworkError, Networks, read_networks
 
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 FROZEN = ('learning.policy="fixed"', 'birth.network="initial"')
@@ -148,3 +148,12 @@ def test_networks_that_do_not_fit_are_refused_by_name(learned, tmp_path):
 def test_a_new_network_for_each_child_is_refused():
     with pytest.raises(ConfigError, match=r'birth.network = "none": must be "initial" with learning.policy = "fixed"'):
         load_config("baseline", overrides=['learning.policy="fixed"'])
+
+
+@pytest.mark.parametrize("name", ["file", "allow_pickle", "args"])
+def test_a_species_may_have_a_name_that_a_library_uses(tmp_path, name):
+    made = Networks({name: np.ones((2, 3), np.float32)}, {name: ("food",)})
+    (tmp_path / "networks.npz").write_bytes(made.content)
+    found = read_networks(tmp_path / "networks.npz")
+    assert found.digest == made.digest
+    np.testing.assert_array_equal(found.params[name], made.params[name])

@@ -8,6 +8,7 @@ checked.
 import hashlib
 import io
 import json
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -51,7 +52,10 @@ class Networks:
             arrays[name] = params
             arrays[name + _INPUTS] = np.frombuffer(json.dumps(self.inputs[name]).encode(), np.uint8)
         file = io.BytesIO()
-        np.savez(file, allow_pickle=False, **arrays)
+        with zipfile.ZipFile(file, "w") as archive:  # not `numpy.savez`, for which some names are arguments
+            for name, array in arrays.items():
+                with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                    np.lib.format.write_array(member, array, allow_pickle=False)
         return file.getvalue()
 
     @cached_property
