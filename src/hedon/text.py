@@ -1,5 +1,9 @@
 """Makes text from outside safe to print in a message."""
 
+import os
+import re
+import shlex
+
 LINE = 200
 """Characters of a name or a value that a message shows; more would hide the message."""
 
@@ -20,6 +24,17 @@ def brief(text: str, limit: int = LINE) -> str:
         limit: characters that are shown.
     """
     return text if len(text) <= limit else f"{text[:limit]}… ({len(text):,} characters)"
+
+
+def command_word(text: str) -> str:
+    """A path as one word of a command that a user copies.
+
+    Args:
+        text: The path. On Windows it has no double quotes, and its shells know no single ones.
+    """
+    if os.name != "nt":
+        return shlex.quote(text)
+    return text if re.fullmatch(r"[\w\\/:.-]+", text) else f'"{text}"'
 
 
 def count(number: int, noun: str) -> str:

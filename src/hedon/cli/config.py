@@ -151,7 +151,7 @@ def migrate(
     if stdout:
         typer.echo(text, nl=False)
         return
-    file.write_text(text, encoding="utf-8")
+    file.write_text(text, encoding="utf-8", newline="")  # the ends of lines that it had
     config = load_config(file)
     typer.echo(f"wrote {file} (preset {config.preset}, fidelity {config.fidelity})")
 

@@ -1,6 +1,5 @@
 """`hedon run`: runs a condition and reports on it."""
 
-import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,7 +11,7 @@ from hedon.cli.report import show_report
 from hedon.error import HedonError
 from hedon.experiment.argument import DEVICES, INSTRUCTION_SETS, MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
-from hedon.text import brief, count, printable
+from hedon.text import brief, command_word, count, printable
 
 if TYPE_CHECKING:
     from hedon.experiment.plan import Display, RunPlan
@@ -130,7 +129,7 @@ def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun
     for seed, extinct in zip(plan.seeds, manifest.extinct_steps, strict=True):
         if extinct is not None:
             console.print(f"The world of seed {seed} died out at step {extinct:,}.")
-    folder = shlex.quote(str(plan.out))
+    folder = command_word(str(plan.out))
     if manifest.status == "interrupted":
         done = max(manifest.steps_done)
         console.print(f"Interrupted after step {done:,} of {plan.steps:,}; all results up to there are kept.")

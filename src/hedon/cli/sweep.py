@@ -10,7 +10,7 @@ from hedon.cli.console import make_console
 from hedon.cli.make import all_finished, make_runs
 from hedon.cli.run import Checkpoint, Hours, Part, Ray, Slurm
 from hedon.record.folder import CHECKPOINT_SECONDS
-from hedon.text import count, printable
+from hedon.text import command_word, count, printable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -267,4 +267,4 @@ def _run_and_report(
 
 
 def _quoted(store: "Store") -> str:
-    return shlex.quote(store.location)
+    return command_word(store.location)

@@ -7,13 +7,14 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 _NO_UNNAMED = (errno.EOPNOTSUPP, errno.EISDIR, errno.EINVAL)
 """Errors of file systems that do not support files without a name."""
 _OWN = "/proc/self/fd"
 _BUSY_SECONDS = 2.0 if os.name == "nt" else 0.0
-"""How long a file may be read by others before it is replaced: Windows refuses that for as long."""
+"""How long a file may be read by others before it is replaced, or be replaced before it is read: Windows refuses both
+for as long [s]."""
 
 
 def write_atomically(path: Path, write: Callable[[BinaryIO], object]) -> None:
@@ -37,7 +38,7 @@ def write_atomically(path: Path, write: Callable[[BinaryIO], object]) -> None:
             os.fsync(file.fileno())
             if not temporary.exists():
                 _give_name(file.fileno(), temporary)
-        _replace(temporary, path)
+        _patiently(lambda: temporary.replace(path))
     except BaseException:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
@@ -64,13 +65,24 @@ def _give_name(descriptor: int, path: Path) -> None:
         os.close(folder)
 
 
-def _replace(temporary: Path, path: Path) -> None:
+def read_whole(path: Path) -> bytes:
+    """The content of a file that `write_atomically` may replace at any time, in one read.
+
+    Args:
+        path: the file.
+
+    Raises:
+        OSError: as the file system raises it.
+    """
+    return _patiently(path.read_bytes)
+
+
+def _patiently(call: Callable[[], Any]) -> Any:
     deadline = time.monotonic() + _BUSY_SECONDS
     while True:
         try:
-            temporary.replace(path)
-            return
-        except PermissionError:
+            return call()
+        except (PermissionError, FileNotFoundError):
             if time.monotonic() >= deadline:
                 raise
             time.sleep(0.02)

@@ -1,10 +1,10 @@
 """The paths of the files of a run."""
 
 import os
-import shlex
 from pathlib import Path
 
 from hedon.record.error import RecordError
+from hedon.text import command_word
 
 CONFIG = "config.toml"
 MANIFEST = "manifest.json"
@@ -83,7 +83,7 @@ def require_no_run(folder: Path) -> None:
     if holds_run(folder):
         raise RecordError(
             f"{folder} already holds a run: choose another folder, remove it first, or continue what `hedon run` made "
-            f"with `hedon resume {shlex.quote(str(folder))}`"
+            f"with `hedon resume {command_word(str(folder))}`"
         )
 
 

@@ -26,6 +26,8 @@ if sys.platform == "win32":
     _BEYOND = 1 << 30
     """A byte far behind the end of the file: nobody can read what is locked [byte]."""
     _LOOK_SECONDS = 0.05
+    _TAKEN = (errno.EACCES, errno.EDEADLK, 0)
+    """What is said of a byte that another has locked; Wine says 0."""
 
     def _take(descriptor: int, wait: bool) -> None:
         while True:
@@ -34,7 +36,7 @@ if sys.platform == "win32":
                 msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
                 return
             except OSError as error:
-                if error.errno not in (errno.EACCES, errno.EDEADLK):
+                if error.errno not in _TAKEN:
                     raise
                 if not wait:
                     raise BlockingIOError from None

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import polars as pl
 
+from hedon.record.atomic import read_whole
 from hedon.record.column import MOST_TURN, Table
 from hedon.record.error import RecordError
 from hedon.record.folder import PARTS_BEFORE
@@ -58,7 +59,7 @@ def read_living(path: Path, table: Table, manifest: Manifest) -> tuple[pl.DataFr
         RecordError: as `read_part`.
     """
     with _reading(path):
-        content = BytesIO(path.read_bytes())  # in one read, because the file can be replaced at any time
+        content = BytesIO(read_whole(path))
         rows = pl.read_parquet(content, columns=[column.name for column in table.columns])
         parts = pl.read_parquet_metadata(content).get(PARTS_BEFORE)
         before = None if parts is None else int(parts)

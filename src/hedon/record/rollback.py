@@ -1,7 +1,6 @@
 """Returns a run's records to a checkpoint, so that the run continues without a missing or repeated row."""
 
 import hashlib
-import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from hedon.record.folder import (
     part_path,
     part_paths,
 )
+from hedon.text import command_word
 
 
 def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint | None, list[str]]:
@@ -76,7 +76,7 @@ def verify_parts(folder: Path, parts: Mapping[str, Sequence[str]]) -> None:
 def _remedy(folder: Path) -> str:
     return (
         "; restore the file from a copy, or continue in a new folder, whose records begin at the checkpoint: "
-        f"hedon branch {shlex.quote(str(folder))}"
+        f"hedon branch {command_word(str(folder))}"
     )
 
 

@@ -1,7 +1,6 @@
 """Writes a run's folder while the engine computes: rows go through a bounded queue to a thread."""
 
 import queue
-import shlex
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -19,6 +18,7 @@ from hedon.record.manifest import Manifest, save_manifest
 from hedon.record.part_writer import PartWriter
 from hedon.record.rows import rows_to_frame
 from hedon.record.schema import run_tables
+from hedon.text import command_word
 
 Rows = Mapping[str, ArrayLike]
 
@@ -224,7 +224,7 @@ class Writer:
         if self._fault is not None:
             raise RecordError(
                 f"cannot write records to {self.folder}: {self._fault}; what was written before is readable. "
-                f"After the cause is removed, continue with: hedon resume {shlex.quote(str(self.folder))}"
+                f"After the cause is removed, continue with: hedon resume {command_word(str(self.folder))}"
             ) from self._fault
 
     def _work(self) -> None:

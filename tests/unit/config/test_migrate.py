@@ -101,16 +101,28 @@ def leaves_of(table: dict[str, Any]) -> Iterator[Any]:
 
 def test_the_command_rewrites_short_and_complete_files(tmp_path: Path) -> None:
     short, whole = tmp_path / "short.toml", tmp_path / "whole.toml"
-    short.write_text("body.food_radius = 5.0  # large\nspecies.agent.birth.parents = 'old_slots'\n")
+    short.write_bytes(b"body.food_radius = 5.0  # large\nspecies.agent.birth.parents = 'old_slots'\n")
     shutil.copy(EARLIER / "one" / "config.toml", whole)
     shown = hedon("config", "migrate", str(short), "--stdout")
     assert (shown.returncode, short.read_text()[:16]) == (0, "body.food_radius")
     for file in (short, whole):
         answer = hedon("config", "migrate", str(file))
         assert (answer.returncode, answer.stderr) == (0, "")
-    assert "food_radius = 5.0  # large" in short.read_text() == shown.stdout
+    assert "food_radius = 5.0  # large" in short.read_text()
+    assert short.read_text().splitlines() == shown.stdout.splitlines()
     assert (load_config(short).world.food_radius, load_config(short).world.parents) == (5.0, "resident_slots")
     assert whole.read_text() == dump_toml(load_config(EARLIER / "one" / "config.toml"))
+
+
+def test_lines_keep_their_ends(tmp_path: Path) -> None:
+    """Those of Windows are two signs."""
+    file = tmp_path / "windows.toml"
+    file.write_bytes(b"body.food_radius = 5.0\r\n# more\r\nbirth.delay = 3\r\n")
+    assert hedon("config", "migrate", file).returncode == 0
+    lines = file.read_bytes().split(b"\n")
+    assert len(lines) > 3
+    assert b"\r\r" not in b"".join(lines)
+    assert load_config(file).world.food_radius == 5.0
 
 
 def test_a_comment_that_goes_with_its_line_is_shown(tmp_path: Path) -> None:
