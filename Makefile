@@ -97,7 +97,7 @@ docs: sync
 
 # The source and the wheels of Linux, in dist, for every Python of 3.11 to 3.13 that is installed.
 wheels: sync
-	$(RUN) --group viewer --group wheel python release/wheel.py
+	$(RUN) --group viewer --group wheel python -m release.wheel
 
 clean:
 	rm -rf build web/node_modules .venv .uv .pytest_cache .ruff_cache

@@ -1,9 +1,9 @@
-"""Builds what can be published from one Linux machine: the source, and wheels of Linux for x86-64 and ARM.
+"""Builds what can be published from one Linux machine: the source, wheels of Linux for x86-64 and ARM, and of Windows.
 
 `make wheels` calls it, with the dependency groups `viewer` (Zig's Clang) and `wheel`. Zig links against glibc 2.28,
 whatever this machine has, and its own C++ library goes into the wheel, so that it runs on every Linux since 2018. There
 is a wheel for each Python that is installed here. The headers of Python for x86-64 serve ARM too: what they say of the
-system differs in assembly of the x87 alone, which no extension uses.
+system differs in assembly of the x87 alone, which no extension uses. Those of Windows come from Maven Central.
 """
 
 import os
@@ -14,11 +14,15 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+from release.windows import fetch
+
 ROOT = Path(__file__).resolve().parents[1]
 PYTHONS = ("3.11", "3.12", "3.13")
 PROCESSORS = ("x86_64", "aarch64")
 GLIBC = (2, 28)
 OUT = ROOT / "dist"
+WINDOWS = ROOT / "build" / "windows"
+"""Where Pythons for Windows are kept."""
 
 
 def zig() -> Path:
@@ -44,32 +48,56 @@ def build_source(out: Path) -> Path:
 
 
 def build_wheel(source: Path, python: str, processor: str, out: Path) -> Path:
-    """A wheel of the source for a Python, as "3.11", and a processor, under the name that says where it runs."""
-    tag = "cp" + python.replace(".", "")
-    raw = out / "raw" / f"{tag}-{processor}"
-    shutil.rmtree(raw, ignore_errors=True)
-    defined = {
-        "HEDON_ZIG": str(zig()),
-        "HEDON_TARGET": f"{processor}-linux-gnu.{GLIBC[0]}.{GLIBC[1]}",
-        "NB_SUFFIX": f".{tag.replace('cp', 'cpython-')}-{processor}-linux-gnu.so",
-        "NB_SUFFIX_S": ".abi3.so",
-    }
-    call(
-        *(uv(), "build", "--quiet", "--wheel", "--python", python, "--out-dir", raw, source),
-        CMAKE_TOOLCHAIN_FILE=str(ROOT / "cmake" / "zig.cmake"),
-        SKBUILD_CMAKE_DEFINE=";".join(f"{name}={value}" for name, value in defined.items()),
+    """A wheel of Linux for a Python, as "3.11", and a processor, under the name that says where it runs."""
+    raw = out / "raw" / f"{_tag(python)}-{processor}"
+    here = _compile(
+        *(source, python, raw, f"{processor}-linux-gnu.{GLIBC[0]}.{GLIBC[1]}"),
+        NB_SUFFIX=f".{_tag(python).replace('cp', 'cpython-')}-{processor}-linux-gnu.so",
+        NB_SUFFIX_S=".abi3.so",
     )
-    here = next(raw.glob("*.whl"))
-    call(sys.executable, "-m", "wheel", "tags", "--remove", "--platform-tag", f"linux_{processor}", here)
+    here = _renamed(here, f"linux_{processor}")
     # auditwheel takes the name of a platform for its own processor alone: it says which C library is needed, for any.
-    call(sys.executable, "-m", "auditwheel", "repair", "--wheel-dir", raw / "found", next(raw.glob("*.whl")))
+    call(sys.executable, "-m", "auditwheel", "repair", "--wheel-dir", raw / "found", here)
     found = next((raw / "found").glob("*.whl"))
     needed = max((int(a), int(b)) for a, b in re.findall(r"manylinux_(\d+)_(\d+)", found.name))
     if needed > GLIBC:
         sys.exit(f"{found.name} needs a newer C library than {GLIBC[0]}.{GLIBC[1]}")
-    policy = f"manylinux_{GLIBC[0]}_{GLIBC[1]}_{processor}"
-    call(sys.executable, "-m", "wheel", "tags", "--remove", "--platform-tag", policy, found)
-    return Path(shutil.copy(next((raw / "found").glob("*.whl")), out))
+    return Path(shutil.copy(_renamed(found, f"manylinux_{GLIBC[0]}_{GLIBC[1]}_{processor}"), out))
+
+
+def build_windows_wheel(source: Path, python: str, out: Path) -> Path:
+    """A wheel of Windows for a Python, as "3.11", which is fetched if it is not there."""
+    home = fetch(python, WINDOWS)
+    here = _compile(
+        *(source, python, out / "raw" / f"{_tag(python)}-windows", "x86_64-windows-gnu"),
+        NB_SUFFIX=f".{_tag(python)}-win_amd64.pyd",
+        NB_SUFFIX_S=".pyd",
+        Python_INCLUDE_DIR=home / "include",
+        Python_LIBRARY=home / "libs" / f"python{python.replace('.', '')}.lib",
+    )
+    return Path(shutil.copy(_renamed(here, "win_amd64"), out))
+
+
+def _tag(python: str) -> str:
+    return "cp" + python.replace(".", "")
+
+
+def _compile(source: Path, python: str, raw: Path, target: str, **defined: str | Path) -> Path:
+    """A wheel with an engine of Zig's, under the name of this machine. `defined` is what CMake is told."""
+    shutil.rmtree(raw, ignore_errors=True)
+    known = {"HEDON_ZIG": zig(), "HEDON_TARGET": target} | defined
+    call(
+        *(uv(), "build", "--quiet", "--wheel", "--python", python, "--out-dir", raw, source),
+        CMAKE_TOOLCHAIN_FILE=str(ROOT / "cmake" / "zig.cmake"),
+        SKBUILD_CMAKE_DEFINE=";".join(f"{name}={value}" for name, value in known.items()),
+    )
+    return next(raw.glob("*.whl"))
+
+
+def _renamed(wheel: Path, platform: str) -> Path:
+    """The same wheel under the name of another platform."""
+    call(sys.executable, "-m", "wheel", "tags", "--remove", "--platform-tag", platform, wheel)
+    return next(wheel.parent.glob("*.whl"))
 
 
 def uv() -> str:
@@ -92,6 +120,7 @@ def main() -> None:
             continue
         for processor in PROCESSORS:
             print(f"wheel: {build_wheel(source, python, processor, OUT)}")
+        print(f"wheel: {build_windows_wheel(source, python, OUT)}")
 
 
 if __name__ == "__main__":
