@@ -85,12 +85,16 @@ class Judge:
         self.count(**assert_touches(simulation, self.model.rules, before, slots, deeds))
 
         expected = self.model.advance(before, deeds)
-        self.assert_same(expected.world, self.costs)
+        # Where one ended whose slot has a newborn is not known, so neither is what it was to its neighbors.
+        replaced = any(deed.replaced for deed in deeds)
+        asks = {agent.agent_id for agent in before.agents if replaced and self.model.rules.of(agent).neighbor}
+        self.assert_same(expected.world, self.costs, frozenset(asks))
         rewards = np.array([expected.rewards[agent.agent_id] for agent in before.agents])
         scale = REWARD * max(1.0, np.abs(rewards).max())
         unknown = [
             (deed.replaced and is_paid_by_place(self.model.rules.of(agent)))
-            or (any(each.replaced for each in deeds) and "meals_near" in paid_names(self.model.rules.of(agent)))
+            or agent.agent_id in asks
+            or (replaced and "meals_near" in paid_names(self.model.rules.of(agent)))
             for agent, deed in zip(before.agents, deeds, strict=True)
         ]
         paid = rollout_rows(simulation, before, slots, "reward")
@@ -100,9 +104,9 @@ class Judge:
             self.assert_newborn_networks(before, params)
         self.note(before, expected)
 
-    def assert_same(self, expected: World, costs: float) -> None:
+    def assert_same(self, expected: World, costs: float, unsure: frozenset[int] = frozenset()) -> None:
         actual = read_world(self.simulation)
-        assert_same_world(actual, expected, costs, self.force, self.model.rules.inherits_late)
+        assert_same_world(actual, expected, costs, self.force, self.model.rules.inherits_late, unsure)
 
     def note(self, before: World, expected: Outcome) -> None:
         """Counts what happened, so that a case can say that what it is there for did."""

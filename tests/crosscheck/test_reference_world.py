@@ -7,7 +7,7 @@ from mechanism import Mixture, alone, mechanisms, worlds
 from mechanism_data import founders_of, networks_of
 from reference_step import Judge, command
 
-from hedon.error import HedonError
+from hedon.error import EngineError, HedonError
 from hedon.experiment.simulation import Simulation
 
 SEED, DRAW = 5, 1
@@ -21,7 +21,8 @@ REFUSED = 1
 
 
 def judge_world(world: Mixture, folder) -> bool:
-    """Lives by the rules for a while; whether the world can be."""
+    """Lives by the rules for a while; whether the world can be. The engine ends those whose bodies are pushed too far
+    into one another."""
     try:
         config = world.config(folder)
         simulation = Simulation(config, [SEED], threads=1)
@@ -34,9 +35,14 @@ def judge_world(world: Mixture, folder) -> bool:
         simulation.set_founders(founders)
     if networks is not None:
         simulation.set_networks(networks)
-    while simulation.worlds[0].step < STEPS and not simulation.worlds[0].extinct:
-        command(simulation)
-        judge.step()
+    try:
+        while simulation.worlds[0].step < STEPS and not simulation.worlds[0].extinct:
+            command(simulation)
+            judge.step()
+    except EngineError as error:
+        if not str(error).startswith("overlap_too_deep"):
+            raise
+        return False
     return True
 
 
