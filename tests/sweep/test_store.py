@@ -50,10 +50,10 @@ def test_a_content_that_is_being_written_has_no_name(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("fault", "breaks", "tries"),
-    [("cut off", TRIES - 1, TRIES), ("cut off", TRIES, TRIES), ("no server", 1, 1)],
+    [("cut off", TRIES - 1, TRIES), ("cut off", TRIES, TRIES), ("of two", TRIES - 1, TRIES), ("no server", 1, 1)],
 )
-def test_what_arrives_cut_off_is_read_again(fault, breaks, tries, tmp_path, monkeypatch):
-    """And nothing else, since a library itself tries for seconds to reach a server."""
+def test_what_does_not_arrive_whole_is_read_again(fault, breaks, tries, tmp_path, monkeypatch):
+    """So is that of which parts of two arrive. Nothing else is: a library itself tries for seconds."""
     store = Store(f"memory://{tmp_path}")
     store.write("a", b"whole")
     cat_file, asked = store._system.cat_file, []
@@ -66,9 +66,10 @@ def test_what_arrives_cut_off_is_read_again(fault, breaks, tries, tmp_path, monk
 
     monkeypatch.setattr(store._system, "cat_file", cut_off)
     monkeypatch.setattr("hedon.jobs.store.PAUSE", 0.0)
-    payload = DriverError if fault == "cut off" else ZeroDivisionError
+    payload, checksum = (DriverError if fault == each else ZeroDivisionError for each in ("cut off", "of two"))
     monkeypatch.setitem(sys.modules, "aiohttp", SimpleNamespace(ClientPayloadError=payload))
-    if fault == "cut off" and breaks < TRIES:
+    monkeypatch.setitem(sys.modules, "botocore.exceptions", SimpleNamespace(FlexibleChecksumError=checksum))
+    if fault != "no server" and breaks < TRIES:
         assert store.read("a") == b"whole"
     else:
         with pytest.raises(HedonError, match=r"cannot read a of memory.*: DriverError: received 3919872 of"):

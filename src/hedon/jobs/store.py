@@ -24,6 +24,8 @@ PAUSE = 0.1
 """Between two tries [s]."""
 PASSING = ".tmp-"
 """Part of the names of objects that are being written; no reader sees them."""
+_PARTS = (("aiohttp", "ClientPayloadError"), ("botocore.exceptions", "FlexibleChecksumError"))
+"""Libraries, and what each raises where not one whole content arrives."""
 
 
 class Store:
@@ -146,6 +148,5 @@ class Store:
 
 
 def _cut_off(error: Exception) -> bool:
-    """Whether only a part of a content arrived, as the library says by which fsspec asks servers."""
-    aiohttp: Any = sys.modules.get("aiohttp")
-    return aiohttp is not None and isinstance(error, aiohttp.ClientPayloadError)
+    """Whether only a part of a content arrived, or parts of two, as the libraries say by which fsspec asks servers."""
+    return any(isinstance(error, getattr(sys.modules.get(name), kind, ())) for name, kind in _PARTS)
