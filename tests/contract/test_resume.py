@@ -12,7 +12,7 @@ from resumed_run import WINDOW, assert_same_run, filler, small_run
 
 from hedon import _engine
 from hedon.config import load_config
-from hedon.experiment.branch import branch
+from hedon.experiment.branch import branch, plan_branch, start_branch
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.replay import replay_run
 from hedon.experiment.resume import continue_run, lock, resume
@@ -317,12 +317,19 @@ def test_checkpoints_are_saved_at_the_ends_of_windows_and_once_at_the_end(tmp_pa
     assert saved[-2:] == [40 * WINDOW, 40 * WINDOW + 5], "the last may be within a window"
 
 
-def test_a_run_that_goes_on_holds_its_old_checkpoint_no_longer(half):
+def test_what_goes_on_holds_its_old_checkpoint_no_longer(half, tmp_path):
     """A file keeps its room on the disk while its arrays are in use, also after it is removed."""
+
+    def held() -> list[str]:
+        return [each.path for each in psutil.Process().memory_maps() if each.path.startswith(str(half))]
+
     with lock(half, steps=STEPS) as found:
         continue_run(found)
-        held = [each.path for each in psutil.Process().memory_maps() if each.path.startswith(str(half))]
-    assert held == []
+        assert held() == []
+    plan = plan_branch(half, tmp_path / "branch", steps=STEPS + WINDOW)
+    assert plan.checkpoint.arrays, "nobody has restored it"
+    start_branch(plan)
+    assert held() == []
 
 
 def test_records_are_those_of_the_checkpoint_as_soon_as_a_run_goes_on(half, monkeypatch):

@@ -102,7 +102,8 @@ def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
 
     Args:
         simulation: A new one, with the config and the seeds of the checkpoint.
-        checkpoint: The worlds.
+        checkpoint: The worlds. Its arrays are let go: they are views of a file, which keeps its room on the disk
+            while they live.
         name: What errors call it.
 
     Returns:
@@ -125,6 +126,7 @@ def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
         ]
         if world.digest() != digest or not same_names or not (world.extinct or world.step == head.step):
             raise RecordError(f"{name} is damaged: world {world.index} is not as it was saved")
+    checkpoint.arrays.clear()
     return Start(head.step, head.run_seconds, head.sampled)
 
 

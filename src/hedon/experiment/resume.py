@@ -212,7 +212,6 @@ def continue_run(found: Resumption, display: Display | None = None) -> Manifest:
             set_initial_state(simulation, plan)
         else:
             start = restore(simulation, checkpoint, f"the checkpoint of {plan.out}")
-            checkpoint.arrays.clear()  # they are views of a file, which keeps its room on the disk while they live
         parts = checkpoint.head.parts if checkpoint else {}
         roll_back(plan.out, parts, start.step)
         manifest = next_manifest(found.manifest, plan, simulation, start.step)
