@@ -69,9 +69,8 @@ def passes_with_oldest(python: str) -> bool:
         return False
     if not done(*install, "--resolution", "lowest-direct", f"{ROOT}[rules]"):
         return False
-    oldest.write_text(subprocess.check_output([uv(), "pip", "freeze", "--python", str(program)], text=True))
-    kept = [line for line in oldest.read_text().splitlines() if not line.startswith("hedon")]
-    oldest.write_text("\n".join(kept))
+    installed = subprocess.check_output([uv(), "pip", "freeze", "--python", str(program)], text=True).splitlines()
+    oldest.write_text("\n".join(line for line in installed if not line.startswith("hedon")))
     if not done(
         *install, "--constraint", str(oldest), "hypothesis", "pandas", "psutil", "pyarrow", "pytest", "pytest-xdist"
     ):

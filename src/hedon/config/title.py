@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from hedon.config.layout import EXTRA
 
-_ADJECTIVES = ("normal", "poor", "rich")
-"""Names of kinds of food that want a noun."""
+_ADJECTIVES = ("normal", "poor")
+"""Names of the presets' kinds of food that want a noun."""
 
 
 def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:

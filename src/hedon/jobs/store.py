@@ -24,7 +24,7 @@ PAUSE = 0.1
 """Between two tries [s]."""
 PASSING = ".tmp-"
 """Part of the names of objects that are being written; no reader sees them."""
-_PARTS = (("aiohttp", "ClientPayloadError"), ("botocore.exceptions", "FlexibleChecksumError"))
+_TORN = (("aiohttp", "ClientPayloadError"), ("botocore.exceptions", "FlexibleChecksumError"))
 """Libraries, and what each raises where not one whole content arrives."""
 
 
@@ -103,7 +103,7 @@ class Store:
                 try:
                     return self._system.cat_file(self._path(name))
                 except Exception as error:
-                    if left == 0 or not _cut_off(error):
+                    if left == 0 or not _is_torn(error):
                         raise
                     time.sleep(PAUSE)
         return None
@@ -147,6 +147,6 @@ class Store:
         return f"{self._root.rstrip('/')}/{name}"
 
 
-def _cut_off(error: Exception) -> bool:
+def _is_torn(error: Exception) -> bool:
     """Whether only a part of a content arrived, or parts of two, as the libraries say by which fsspec asks servers."""
-    return any(isinstance(error, getattr(sys.modules.get(name), kind, ())) for name, kind in _PARTS)
+    return any(isinstance(error, getattr(sys.modules.get(name), kind, ())) for name, kind in _TORN)

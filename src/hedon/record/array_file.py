@@ -123,6 +123,7 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
             raise ValueError(f"{damaged} is damaged")
         # Windows removes no file that is mapped, and a run removes its old checkpoints.
         file = np.fromfile(path, np.uint8) if os.name == "nt" else np.asarray(np.memmap(path, np.uint8, "r"))
+        file.setflags(write=False)
         for entry in entries:
             head = entry.header_offset
             first = head + _LOCAL_HEAD + sum(_LENGTHS.unpack(file[head : head + _LOCAL_HEAD].tobytes()))

@@ -82,7 +82,7 @@ def _patiently(call: Callable[[], Any]) -> Any:
     while True:
         try:
             return call()
-        except (PermissionError, FileNotFoundError):
+        except PermissionError:
             if time.monotonic() >= deadline:
                 raise
             time.sleep(0.02)
