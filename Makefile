@@ -95,7 +95,7 @@ docs: sync
 	$(RUN) $(SITE) sphinx-build --quiet --fail-on-warning --conf-dir docs/site . build/docs
 	$(RUN) $(SITE) python docs/site/paper.py build/docs/docs/paper/paper.pdf
 
-# The source and the wheels of Linux and Windows, in dist, for every Python of 3.11 to 3.13 that is installed.
+# The source and the wheels of Linux, Windows and macOS, in dist, for every Python of 3.11 to 3.13 that is installed.
 wheels: sync
 	$(RUN) --group viewer --group wheel python -m release.wheel
 

