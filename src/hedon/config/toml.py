@@ -28,8 +28,9 @@ def read_toml(path: Path) -> Table:
     try:
         with path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise ConfigError(origin, [Problem("", f"cannot be read: {error.strerror}")]) from None
+    except OSError as error:  # of a folder Windows says that permission is denied
+        said = "it is a folder" if path.is_dir() else error.strerror
+        raise ConfigError(origin, [Problem("", f"cannot be read: {said}")]) from None
     except ValueError as error:  # a path with a null character
         raise ConfigError(origin, [Problem("", f"cannot be read: {error}")]) from None
     if len(content) > MAX_BYTES:
@@ -54,7 +55,8 @@ def parse_toml(text: str, origin: str) -> Table:
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise ConfigError(origin, [Problem("", f"is not valid TOML: {error}")]) from None
+        hint = "; a path with \\ stands in single quotes" if str(error).startswith(_ESCAPES) else ""
+        raise ConfigError(origin, [Problem("", f"is not valid TOML: {error}{hint}")]) from None
     except RecursionError:
         raise ConfigError(origin, [_TOO_DEEP]) from None
     except ValueError:  # Python does not read integers of thousands of digits
@@ -78,6 +80,8 @@ def require_plain(tables: Any, origin: str) -> None:
         raise ConfigError(origin, problems)
 
 
+_ESCAPES = ("Unescaped", "Invalid hex value")
+"""How messages about `\\` in double quotes begin, as "C:\\own" and "C:\\Users" have it."""
 _TOO_LONG = Problem("", f"has an integer of more than {MAX_DIGITS:,} digits")
 _TOO_DEEP = Problem("", f"has tables or lists nested deeper than {MAX_DEPTH} levels")
 
