@@ -57,8 +57,10 @@ struct Cold {
     const int64_t lines = seen.count / world.shape->capacity;
     memory.expect(&seen[slot * lines], lines * static_cast<int64_t>(sizeof(ObservationLine)));
   }
+  /// Of agents that have learned before this window. Their counts of updates tell, too, but others write these now.
   void moments(int32_t slot) const {
-    if (!world.species(slot).learns || world.state.updates[slot] == 0) return;
+    const int64_t before = world.head().step - 2 * world.shape->steps;
+    if (!world.species(slot).learns || world.state.life[slot].birth_step > before) return;
     const Learner learner = learner_of(world, slot);
     const int64_t bytes = world.shape->params * static_cast<int64_t>(sizeof(float));
     memory.expect(learner.first_moment, bytes);
