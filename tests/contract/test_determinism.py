@@ -90,7 +90,8 @@ def test_a_second_caller_is_refused_while_the_engine_runs():
 
 def test_busy_neighbors_neither_stop_a_team_nor_change_anything():
     # As many busy programs as processors: the team then changes between stepping together and alone.
-    hog = [sys.executable, "-c", "while True: pass"]
+    # They end by themselves, should this process crash.
+    hog = [sys.executable, "-c", "import time; end = time.time() + 120\nwhile time.time() < end: pass"]
     hogs = [subprocess.Popen(hog) for _ in range(os.cpu_count() or 1)]
     try:
         simulation = make_simulation(*LIVELY, seeds=(7,), threads=2)
