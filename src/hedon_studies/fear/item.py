@@ -21,6 +21,8 @@ SCALE = Scale((1, 2, 3, 4, 5), 2_048_000)
 """Our choice; the sequel has five runs of 10,240,000 steps for each condition."""
 FRAMES = 1024
 """Steps between two records of all positions."""
+LATE = 51_200
+"""Steps at the end of a world over which its numbers are averaged."""
 PREY, PREDATOR = "prey", "predator"
 
 MAIN = Condition("prey", "predator")
@@ -121,6 +123,19 @@ def _survival(inputs: ItemInputs) -> Iterator[ResultTable]:
     yield make_table(
         "sequel_survival", "Worlds that keep all their species", rows, sentences(_LAST, missing(EVERY, inputs))
     )
+    alive = [
+        {
+            "species": label,
+            "seed": world.seed,
+            "last_step": world.last_step,
+            "died_out": world.extinct_step,
+            "alive": world.population.filter(pl.col("step") > world.last_step - LATE)["alive"].mean(),
+        }
+        for label, group in present((MAIN, HUNTERS), inputs).items()
+        for world in group
+    ]
+    note = f"alive: mean over the last {LATE:,} steps of the record. died_out: the step, if it did."
+    yield make_table("sequel_alive", "Numbers of prey and predators, by world", alive, note)
 
 
 def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
@@ -198,6 +213,8 @@ SEQUEL: tuple[Item, ...] = (
         "Runs in which a species died out are left out of its figures; we count them.",
         partial(_survival),
         *EVERY,
+        MAIN,
+        HUNTERS,
     ),
     _item(
         "sequel-deaths",

@@ -172,6 +172,17 @@ def test_worlds_of_each_condition_are_counted_by_what_died_out() -> None:
     assert 0 < row["low"] < 0.5 < row["high"] < 1
 
 
+def test_the_numbers_of_each_species_stand_beside_the_step_of_its_end() -> None:
+    """As means over the last 51,200 steps: of windows of 1,024, those from the 51st last on count for nothing."""
+    steps = [number * WINDOW for number in range(1, 61)]
+    numbers = pl.DataFrame({"step": steps, "alive": [1000] * 10 + [20, 40] * 25})
+    first, second = (replace(world, population=numbers, last_step=steps[-1]) for world in group("predator", 2))
+    lost = replace(second, extinct_step=7, last_step=7, population=numbers.clear())
+    first_row, second_row = tables("sequel-survival", {"predators": [first, lost]})["sequel_alive"]
+    assert first_row == {"species": "predators", "seed": 1, "last_step": 61440, "died_out": None, "alive": 30.0}
+    assert (second_row["died_out"], second_row["alive"]) == (7, None)
+
+
 def test_windows_stand_beside_those_of_the_program() -> None:
     numbers = pl.DataFrame(
         {"step": [WINDOW, 2 * WINDOW], "alive": [300, 450], "births": [160, 170], "deaths_eaten": [10, 20]}
