@@ -11,6 +11,7 @@ import pytest
 from scipy import stats
 
 from hedon.statistic import holm
+from hedon.statistic.extinction import extinct_share
 from hedon_studies.fear.program import PITFALL_COLUMNS, PITFALL_RUN, PREDATOR_RUN, WINDOW
 
 RESULTS = Path(__file__).parents[2] / "docs" / "results"
@@ -24,6 +25,7 @@ ARMS = {
 """Ways of learning, as the page names them, and the folder of each."""
 FOUNDERS = {"predator": ("w_normal", "w_action", "w_see_prey", "w_see_predator")}
 FOUNDERS["pitfall"] = ("w_normal", "w_action", "w_see_agent", "w_see_obstacle")
+SURVIVAL_STEPS = 256_000
 HUNTED = ("predator", "predator-small-mouth", "predator-large-mouth", "predator-less-food")
 
 
@@ -289,6 +291,29 @@ def test_first_windows_beside_the_sequels_program(name):
     assert len(rows) >= 5
     for row in rows:
         assert row in page(f"{name}.md")
+
+
+def test_worlds_that_keep_their_predators():
+    rows, shown = table("predator/survival/tables/sequel_alive.csv"), page("predator.md")
+    prey, predators = rows.filter(species="prey"), rows.filter(species="predators")
+    ends = predators["died_out"].drop_nulls().to_list()
+    assert prey["died_out"].null_count() == len(prey) == 20
+    assert f"at step {ends[0]:,}; none loses its prey" in shown
+    share = extinct_share(
+        predators.select(pl.coalesce("died_out", "last_step")).to_series().to_numpy().astype(float),
+        predators["died_out"].is_not_null().to_numpy(),
+        SURVIVAL_STEPS,
+    )
+    kept = [100 * (1 - each) for each in (share.share, share.high, share.low)]
+    assert f"{kept[0]:.0f} % ({kept[1]:.0f} … {kept[2]:.0f} %, Kaplan" in shown.replace("\n", " ")
+    p = stats.fisher_exact([[len(ends), len(predators) - len(ends)], [1, 5]])[1]
+    assert f"Fisher's exact test sees no difference (p {p:.2f})" in shown
+    both = predators.filter(pl.col("died_out").is_null())["seed"]
+    kept_alive = [group.filter(pl.col("seed").is_in(both.to_list()))["alive"].to_numpy() for group in (prey, predators)]
+    for alive in kept_alive:
+        assert f"{alive.min():.0f} to {alive.max():.0f}, mean {alive.mean():.0f}" in shown
+    assert f"above in {(kept_alive[0] > 349).sum()} of {len(both)}" in shown
+    assert f"; in {((kept_alive[1] >= 10) & (kept_alive[1] <= 30)).sum()} of {len(both)}" in shown
 
 
 VERDICT = re.compile(
