@@ -24,6 +24,7 @@ OUT = ROOT / "dist"
 FOREIGN = ROOT / "build" / "foreign"
 """Where Pythons for other systems are kept."""
 MACOS = (13, 0)
+"""The oldest macOS that Zig links for."""
 
 
 def zig() -> Path:

@@ -313,7 +313,14 @@ def test_worlds_that_keep_their_predators():
     for alive in kept_alive:
         assert f"{alive.min():.0f} to {alive.max():.0f}, mean {alive.mean():.0f}" in shown
     assert f"above in {(kept_alive[0] > 349).sum()} of {len(both)}" in shown
+    article = page("../paper/paper.md")
+    assert f"{len(both)} of our {len(prey)} worlds keep both species" in article
+    assert f"with {kept_alive[1].mean():.0f} predators in the mean" in article
     assert f"; in {((kept_alive[1] >= 10) & (kept_alive[1] <= 30)).sum()} of {len(both)}" in shown
+    judged = table("predator/survival/tables/verdict.csv")
+    assert (judged["verdict"] == "undecided").all()
+    assert [round(value * len(both)) for value in judged["value"]] == [0, 1, 1]
+    assert "97.5 % of neutral\n  genes; it is above, as is that of seeing prey, in one." in shown
 
 
 VERDICT = re.compile(
