@@ -75,6 +75,8 @@ def test_the_plan_names_every_item_with_a_measured_time(tmp_path: Path) -> None:
         assert re.search(rf"^ {re.escape(name)} ", answer.stdout, re.MULTILINE)
     assert re.search(r"Measured now: [\d,]+ world-steps/s on 1 thread with \d+ agents", answer.stdout)
     assert re.search(r"^ together .* \d+ h \d\d min", answer.stdout, re.MULTILINE)
+    # Two species of one setting are one setting.
+    assert re.search(r"^ sequel-numbers .* 1 setting, ", answer.stdout, re.MULTILINE)
 
 
 def test_the_list_names_every_study_and_item(tmp_path: Path) -> None:

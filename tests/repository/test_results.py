@@ -295,7 +295,7 @@ def test_first_windows_beside_the_sequels_program(name):
 
 def test_worlds_that_keep_their_predators():
     rows, shown = table("predator/survival/tables/sequel_alive.csv"), page("predator.md")
-    prey, predators = rows.filter(species="prey"), rows.filter(species="predators")
+    prey, predators = rows.filter(species="prey"), rows.filter(species="predator")
     ends = predators["died_out"].drop_nulls().to_list()
     assert prey["died_out"].null_count() == len(prey) == 20
     assert f"at step {ends[0]:,}; none loses its prey" in shown

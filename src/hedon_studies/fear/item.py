@@ -125,13 +125,13 @@ def _survival(inputs: ItemInputs) -> Iterator[ResultTable]:
     )
     alive = [
         {
-            "species": label,
+            "species": world.species,
             "seed": world.seed,
             "last_step": world.last_step,
             "died_out": world.extinct_step,
             "alive": world.population.filter(pl.col("step") > world.last_step - LATE)["alive"].mean(),
         }
-        for label, group in present((MAIN, HUNTERS), inputs).items()
+        for group in present((FOOD[0], HUNTERS), inputs).values()
         for world in group
     ]
     note = f"alive: mean over the last {LATE:,} steps of the record. died_out: the step, if it did."
@@ -213,7 +213,6 @@ SEQUEL: tuple[Item, ...] = (
         "Runs in which a species died out are left out of its figures; we count them.",
         partial(_survival),
         *EVERY,
-        MAIN,
         HUNTERS,
     ),
     _item(

@@ -166,7 +166,8 @@ def tables(name: str, worlds: dict) -> dict[str, list[dict]]:
 
 def test_worlds_of_each_condition_are_counted_by_what_died_out() -> None:
     ends = [{"extinct_step": 1000}, {"apart_step": 2000}, {}, {}]
-    worlds = [replace(world, **end) for world, end in zip(group("predator", 4), ends, strict=True)]
+    numbers = pl.DataFrame({"step": [WINDOW], "alive": [300]})
+    worlds = [replace(world, population=numbers, **end) for world, end in zip(group("predator", 4), ends, strict=True)]
     (row,) = tables("sequel-survival", {"as usual": worlds})["sequel_survival"]
     assert (row["worlds"], row["it_died_out"], row["another_died_out"], row["last"]) == (4, 1, 1, 0.5)
     assert 0 < row["low"] < 0.5 < row["high"] < 1
@@ -179,7 +180,7 @@ def test_the_numbers_of_each_species_stand_beside_the_step_of_its_end() -> None:
     first, second = (replace(world, population=numbers, last_step=steps[-1]) for world in group("predator", 2))
     lost = replace(second, extinct_step=7, last_step=7, population=numbers.clear())
     first_row, second_row = tables("sequel-survival", {"predators": [first, lost]})["sequel_alive"]
-    assert first_row == {"species": "predators", "seed": 1, "last_step": 61440, "died_out": None, "alive": 30.0}
+    assert first_row == {"species": first.species, "seed": 1, "last_step": 61440, "died_out": None, "alive": 30.0}
     assert (second_row["died_out"], second_row["alive"]) == (7, None)
 
 

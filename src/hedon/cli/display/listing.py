@@ -1,6 +1,7 @@
 """The items of a request as a table: what each needs, and how long that takes."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from rich.console import Group
 from rich.text import Text
@@ -51,8 +52,8 @@ def _needs(request: Request, item: Item) -> str:
     if not item.conditions:
         return "only settings"
     scale = request.scale(item)
-    settings, worlds = len(item.conditions), len(scale.seeds)
-    parts = [count(settings, "setting"), count(worlds, "world")]
+    settings = {replace(each, label="", species="") for each in item.conditions}  # whose two species are two conditions
+    parts = [count(len(settings), "setting"), count(len(scale.seeds), "world")]
     return ", ".join([*parts, f"{scale.steps:,} steps"])
 
 
