@@ -8,13 +8,13 @@ import pytest
 from acting_weights import AFTER_W2, HIDDEN, as_read
 from observed_touch import assert_touches, touch_bits
 from observed_world import food_slots, read_deeds, read_world, rollout_rows
-from reference.channel import is_paid_by_place, paid_names
+from reference.channel import is_paid_by_place
 from reference.draw import normals
 from reference.heredity import first_log_sd, inherited_network
 from reference.meal import can_digest
 from reference.model import Model
+from reference.neighbor import neighbors
 from reference.reward import inputs
-from reference.rule_book import neighbors
 from reference.sense import body_sense, smells
 from reference.setting import Rules
 from reference.state import Agent, Deed, Outcome, Turn, World
@@ -87,15 +87,14 @@ class Judge:
         expected = self.model.advance(before, deeds)
         # Where one ended whose slot has a newborn is not known, so neither is what it was to its neighbors.
         replaced = any(deed.replaced for deed in deeds)
-        asks = {agent.agent_id for agent in before.agents if replaced and self.model.rules.of(agent).neighbor}
-        self.assert_same(expected.world, self.costs, frozenset(asks))
+        unsure = [replaced and is_paid_by_place(self.model.rules.of(agent), others=True) for agent in before.agents]
+        ids = frozenset(agent.agent_id for agent, each in zip(before.agents, unsure, strict=True) if each)
+        self.assert_same(expected.world, self.costs, ids)
         rewards = np.array([expected.rewards[agent.agent_id] for agent in before.agents])
         scale = REWARD * max(1.0, np.abs(rewards).max())
         unknown = [
-            (deed.replaced and is_paid_by_place(self.model.rules.of(agent)))
-            or agent.agent_id in asks
-            or (replaced and "meals_near" in paid_names(self.model.rules.of(agent)))
-            for agent, deed in zip(before.agents, deeds, strict=True)
+            each or (deed.replaced and is_paid_by_place(self.model.rules.of(agent), others=False))
+            for each, agent, deed in zip(unsure, before.agents, deeds, strict=True)
         ]
         paid = rollout_rows(simulation, before, slots, "reward")
         assert_close(paid[np.logical_not(unknown)], rewards[np.logical_not(unknown)], scale, 1e-6)
@@ -248,7 +247,7 @@ def _held(rules: Rules, world: World) -> dict[str, float]:
 
 
 def _kin(rules: Rules, world: World) -> int:
-    """How many kin the queries of rules find."""
+    """How many kin queries find."""
     asked = ((agent, query) for agent in world.agents for query in rules.of(agent).neighbor.values())
     return sum(int(neighbors(rules, world, agent, query)["kin"]) for agent, query in asked)
 

@@ -68,22 +68,22 @@ struct Channel {
   static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, 2 * MAX_TYPES - 1), Limit::over(0, 1e6)};
 };
 
-/// Numbers that answer a query of a rule.
+/// Numbers that answer a query as a step begins.
 inline constexpr int QUERY_NUMBERS = 4;
 
-/// Who near an agent a rule asks about.
+/// What near an agent a query finds.
 struct NeighborQuery {
-  int32_t species;  ///< bit s: those of species s count
-  float range;      ///< between centers [u]
+  int32_t types;  ///< bit t: those of type t count, species and kinds of food
+  float range;    ///< between centers [u]
 
-  HEDON_FIELDS(NeighborQuery, species, range)
-  static constexpr Limit LIMITS[] = {Limit::from(0, (1 << MAX_SPECIES) - 1), Limit::over(0, 1e4)};
+  HEDON_FIELDS(NeighborQuery, types, range)
+  static constexpr Limit LIMITS[] = {Limit::from(0, (1 << MAX_TYPES) - 1), Limit::over(0, 1e4)};
 };
 
 /// Whether a source needs what the agent observes.
 constexpr bool is_sensed(ChannelSource source) {
   return source == ChannelSource::see_mean || source == ChannelSource::see_max || source == ChannelSource::nearness ||
-         source == ChannelSource::smell || source == ChannelSource::smell_mean;
+         source == ChannelSource::smell || source == ChannelSource::smell_mean || source == ChannelSource::neighbor;
 }
 
 /// One term of the reward: coef · weight · channel.

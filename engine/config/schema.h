@@ -199,13 +199,12 @@ struct SensorConfig {
   int32_t touch_sectors;
   float mouth_spread;  ///< [degree]
   float mouth_center;  ///< [degree]
-  float near_range;  ///< [u]
   SensorRayInside ray_inside;
   HEDON_FIELDS(SensorConfig, ray_count, ray_spread, ray_length, smell_decay, noses, nose_angle, touch_sectors,
-      mouth_spread, mouth_center, near_range, ray_inside)
+      mouth_spread, mouth_center, ray_inside)
   static constexpr Limit LIMITS[] = {Limit::from(1, 32), Limit::from(0, 180), Limit::over(0, 100000), Limit::from(0.001,
       10), Limit::from(1, 2), Limit::from(0, 180), Limit::from(1, 32), Limit::over(0, 180), Limit::from(-180, 180),
-      Limit::over(0, 100000), Limit()};
+      Limit()};
 };
 
 struct PopulationConfig {
@@ -349,15 +348,15 @@ HEDON_ENUM(GenomeLearning, learning_rate, gamma, entropy_coef, action_sd)
 HEDON_ENUM(GenomeFamily, threshold, threshold_width)
 HEDON_ENUM(RuleUse, reward, hazard, birth)
 HEDON_ENUM(ChannelSource, velocity, angle, heading, angular_velocity, store, store_before, store_change, meals, damage,
-      see_mean, see_max, nearness, smell, smell_mean, contacts, touched, near, meals_near, effort, force, force_norm,
-      moved, position, age, births, waits, drive_reduction, season, step, alive, neighbor, one, last)
-HEDON_ENUM(ChannelOf, one, two, stores, kinds, meals, sees, smells, noses, touches, season, queries, harm, mates, drive,
-      last)
+      see_mean, see_max, nearness, smell, smell_mean, contacts, touched, effort, force, force_norm, moved, position,
+      age, births, waits, drive_reduction, season, step, alive, neighbor, neighbor_meals, one, last)
+HEDON_ENUM(ChannelOf, one, two, stores, meals, sees, smells, noses, touches, season, answers, queries, harm, mates,
+      drive, last)
 inline constexpr ChannelOf CHANNEL_OF[] = {ChannelOf::two, ChannelOf::one, ChannelOf::two, ChannelOf::one,
       ChannelOf::stores, ChannelOf::stores, ChannelOf::stores, ChannelOf::meals, ChannelOf::harm, ChannelOf::sees,
       ChannelOf::sees, ChannelOf::one, ChannelOf::noses, ChannelOf::smells, ChannelOf::touches, ChannelOf::one,
-      ChannelOf::kinds, ChannelOf::one, ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one, ChannelOf::two,
-      ChannelOf::one, ChannelOf::one, ChannelOf::mates, ChannelOf::drive, ChannelOf::season, ChannelOf::one,
-      ChannelOf::one, ChannelOf::queries, ChannelOf::one, ChannelOf::last};
+      ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one,
+      ChannelOf::mates, ChannelOf::drive, ChannelOf::season, ChannelOf::one, ChannelOf::one, ChannelOf::answers,
+      ChannelOf::queries, ChannelOf::one, ChannelOf::last};
 
 }  // namespace hedon

@@ -20,7 +20,6 @@ HEDON_ENUM(GenomeSet, body_radius,
       sensor_nose_angle,
       sensor_mouth_spread,
       sensor_mouth_center,
-      sensor_near_range,
       store_capacity,
       store_basic_cost,
       store_action_cost,
@@ -61,7 +60,6 @@ HEDON_FN SettableNumber settable(SpeciesConfig& config, GenomeSet which, int32_t
     case GenomeSet::sensor_nose_angle: return {&config.sensor.nose_angle, 0.0f, 180.0f};
     case GenomeSet::sensor_mouth_spread: return {&config.sensor.mouth_spread, 1.1754943508222875e-38f, 180.0f};
     case GenomeSet::sensor_mouth_center: return {&config.sensor.mouth_center, -180.0f, 180.0f};
-    case GenomeSet::sensor_near_range: return {&config.sensor.near_range, 1.1754943508222875e-38f, 100000.0f};
     case GenomeSet::store_capacity: return {&own.capacity, 1.1754943508222875e-38f, 1000000.0f};
     case GenomeSet::store_basic_cost: return {&own.basic_cost, 0.0f, 10000.0f};
     case GenomeSet::store_action_cost: return {&own.action_cost, 0.0f, 10000.0f};

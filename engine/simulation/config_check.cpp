@@ -132,8 +132,6 @@ int32_t numbers_of(ChannelSource source, const Config& config, int32_t s) {
       return 2;
     case ChannelOf::stores:
       return 1 + species.store.count;
-    case ChannelOf::kinds:
-      return config.species.count + config.food.count;
     case ChannelOf::meals:
       return meals_of(config);
     case ChannelOf::sees:
@@ -150,8 +148,10 @@ int32_t numbers_of(ChannelSource source, const Config& config, int32_t s) {
       return species.birth.mating == BirthMating::pairs ? 1 : 0;
     case ChannelOf::drive:
       return layout.set_points.count > 0 ? 1 : 0;
+    case ChannelOf::answers:
+      return layout.neighbors.count * QUERY_NUMBERS;
     case ChannelOf::queries:
-      return layout.has_rule() ? layout.neighbors.count * QUERY_NUMBERS : 0;
+      return layout.neighbors.count;
     case ChannelOf::last:
       return layout.last.count;
   }
@@ -207,8 +207,6 @@ void check_layout(Complaint& complaint, const std::string& path, const Config& c
   count("set_points", own.set_points.count, stores, "one for each store");
   count("gives", own.gives.count, config.food.count * stores, "one for each kind of food and each store");
   count("needs", own.needs.count, config.food.count * stores, "one for each kind of food and each store");
-  complaint.need(own.has_rule() || own.neighbors.count == 0, path + "neighbors", own.neighbors.count,
-                 "none for a species without rules");
   for (int32_t i = 0; i < own.sets.count; ++i) {
     if (own.sets[i].sets == GenomeSet::body_radius && own.sets[i].gene < own.genes.count) {
       const double most = config.species[s].body.radius * std::pow(10.0, own.genes[own.sets[i].gene].limit());

@@ -7,8 +7,7 @@
 #include "base/math.h"
 #include "base/vec2.h"
 #include "evolution/reward.h"
-#include "physics/neighbor.h"
-#include "world/scene.h"
+#include "world/neighborhood.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -62,36 +61,6 @@ HEDON_FN int32_t felt_sectors(const World& world, int32_t slot, int32_t first, i
     for (int32_t c = first; c < last; ++c) any |= felt(c * sectors + s);
     count += any != 0;
   }
-  return count;
-}
-
-/// How many circles of a type had their centers near that of the agent in `slot` when the step began, without its own.
-HEDON_FN int32_t count_near(const World& world, int32_t slot, int32_t type) {
-  const RayScene& scene = world.scene;
-  const Vec2 center{world.scratch.start_x[slot], world.scratch.start_y[slot]};
-  const float range = world.species(slot).config.sensor.near_range;
-  int32_t count = 0;
-  for_each_circle_in(world, center, range, [&](int32_t i) {
-    const Vec2 apart{scene.x[i] - center.x, scene.y[i] - center.y};
-    const bool near = squared_length(apart) <= range * range;
-    count += near && static_cast<int32_t>(scene.type[i]) == type && i != scene.own[slot];
-  });
-  return count;
-}
-
-/// What others of its species ate in this step whose centers are near that of the agent in `slot`, in meals.
-HEDON_FN int32_t count_meals_near(const World& world, int32_t slot) {
-  const BodyState& body = world.state.physics.bodies;
-  const Species& species = world.species(slot);
-  const float range = species.config.sensor.near_range;
-  int32_t count = 0;
-  for_each_body_near(world.state.physics, body.x[slot], body.y[slot], range, [&](int32_t other) {
-    if (other == slot || world.state.alive[other] == 0 || other < species.first_slot || other >= species.last_slot)
-      return;
-    const Vec2 apart{body.x[other] - body.x[slot], body.y[other] - body.y[slot]};
-    if (!(squared_length(apart) <= range * range)) return;
-    for (int32_t m = 0; m < world.shape->meals(); ++m) count += world.meal(other)[m];
-  });
   return count;
 }
 
@@ -165,10 +134,6 @@ HEDON_FN double channel_value(const World& world, int32_t slot, const PackedObse
       return felt_sectors(world, slot, i, i + 1);
     case ChannelSource::touched:
       return felt_sectors(world, slot, 0, species.layout.touches.count);
-    case ChannelSource::near:
-      return count_near(world, slot, i);
-    case ChannelSource::meals_near:
-      return count_meals_near(world, slot);
     case ChannelSource::effort:
       return static_cast<double>(applied_force(world, slot) / species.max_force);
     case ChannelSource::force:
@@ -196,6 +161,8 @@ HEDON_FN double channel_value(const World& world, int32_t slot, const PackedObse
       return static_cast<double>(species.capacity() - state.free_count[world.shape->species_of(slot)]);
     case ChannelSource::neighbor:
       return scratch.near[int64_t{slot} * world.shape->near + i];
+    case ChannelSource::neighbor_meals:
+      return count_meals_near(world, slot, species.layout.neighbors[i]);
     case ChannelSource::one:
       return 1.0;
     case ChannelSource::last:

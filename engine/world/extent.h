@@ -55,7 +55,7 @@ enum class Extent : uint8_t {
   scents,            ///< what an agent smells: channels times noses
   memory,            ///< numbers that a rule keeps for each agent
   record,            ///< numbers that a rule gets for one agent
-  near,              ///< numbers that answer the queries of a rule about one agent
+  near,              ///< numbers that answer the queries about one agent
   steps,             ///< of a rollout
   step_actions,      ///< actions of a rollout
   observations,      ///< cache lines of the observations of a rollout, and of the one after it

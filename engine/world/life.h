@@ -96,11 +96,7 @@ HEDON_FN void decide_by_rule(World& world, int32_t s, RuleUse use) {
 /// Asks all rules: first what agents are paid, then, with the memories that this leaves, their chances.
 HEDON_FN void apply_rules(World& world) {
   for (int32_t s = 0; s < world.shape->species && world.shape->ruled; ++s) {
-    const Species& species = world.shape->of[s];
-    const SpeciesLayout& layout = species.layout;
-    for (int32_t slot = species.first_slot; slot < species.last_slot && layout.neighbors.count > 0; ++slot) {
-      if (world.state.alive[slot] != 0) look_around(world, slot);
-    }
+    const SpeciesLayout& layout = world.shape->of[s].layout;
     if (layout.has_rule(RuleUse::reward)) pay_by_rule(world, s);
     if (layout.has_rule(RuleUse::hazard)) decide_by_rule(world, s, RuleUse::hazard);
     if (layout.has_rule(RuleUse::birth)) decide_by_rule(world, s, RuleUse::birth);

@@ -1,4 +1,4 @@
-/// The agents near an agent: queries of rules. `hedon.config.neighbor` says what each number is.
+/// What is near an agent: queries. `hedon.config.neighbor` says what each number is.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include "base/device.h"
 #include "base/math.h"
 #include "physics/neighbor.h"
+#include "world/scene.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -22,38 +23,75 @@ HEDON_FN bool are_kin(const World& world, int32_t slot, int32_t other) {
   return others[0] == id || others[1] == id;
 }
 
-/// Answers one query about the agent in `slot`. Of equally near ones, the oldest is the nearest.
-HEDON_FN void ask_neighbors(const World& world, int32_t slot, const NeighborQuery& query, double* answer) {
-  const WorldState& state = world.state;
-  const BodyState& body = state.physics.bodies;
+/// Whether a query finds things of a type.
+HEDON_FN bool asks_for(const NeighborQuery& query, int32_t type) { return (query.types >> type & 1) != 0; }
+
+/// Calls f(other, apart) for the other living agents that a query finds around the agent in `slot`.
+template <class F>
+HEDON_FN void for_each_agent_near(const World& world, int32_t slot, const NeighborQuery& query, F&& f) {
+  const BodyState& body = world.state.physics.bodies;
   const Vec2 center{body.x[slot], body.y[slot]};
-  int32_t count = 0, kin = 0, nearest = -1;
-  float least = query.range * query.range;
-  for_each_body_near(state.physics, center.x, center.y, query.range, [&](int32_t other) {
-    if (other == slot || state.alive[other] == 0 || (query.species >> world.shape->species_of(other) & 1) == 0) return;
-    const float squared = squared_length(Vec2{body.x[other], body.y[other]} - center);
-    if (!(squared <= query.range * query.range)) return;
-    ++count;
-    kin += are_kin(world, slot, other);
-    const bool older = nearest < 0 || state.life[other].agent_id < state.life[nearest].agent_id;
-    if (squared > least || (squared == least && !older)) return;
-    nearest = other;
-    least = squared;
+  for_each_body_near(world.state.physics, center.x, center.y, query.range, [&](int32_t other) {
+    if (other == slot || world.state.alive[other] == 0 || !asks_for(query, world.shape->species_of(other))) return;
+    const Vec2 apart = Vec2{body.x[other], body.y[other]} - center;
+    if (squared_length(apart) <= query.range * query.range) f(other, apart);
   });
-  answer[0] = count;
-  answer[1] = kin;
-  answer[2] = sqrt(static_cast<double>(least));
-  answer[3] = 0.0;
-  if (nearest < 0) return;
-  const Vec2 forward = heading(body.angle[slot]), apart = Vec2{body.x[nearest], body.y[nearest]} - center;
-  answer[3] = atan2_double(cross(forward, apart), dot(forward, apart));
 }
 
-/// Answers all queries about the agent in `slot`, for the channels of its rules.
-HEDON_FN void look_around(const World& world, int32_t slot) {
+/// Calls f(apart) for the foods that a query finds around the agent in `slot`, with those just eaten if they are seen.
+template <class F>
+HEDON_FN void for_each_food_near(const World& world, int32_t slot, const NeighborQuery& query, F&& f) {
+  const RayScene& scene = world.scene;
+  const Vec2 center{world.state.physics.bodies.x[slot], world.state.physics.bodies.y[slot]};
+  for_each_circle_in(world, center, query.range, [&](int32_t i) {
+    const int32_t type = static_cast<int32_t>(scene.type[i]);
+    if (type < world.shape->species || !asks_for(query, type)) return;
+    const Vec2 apart = Vec2{scene.x[i], scene.y[i]} - center;
+    if (squared_length(apart) <= query.range * query.range) f(apart);
+  });
+}
+
+/// Answers one query about the agent in `slot` as a step begins. Of equally near agents, the oldest is the nearest.
+HEDON_FN void ask_neighbors(const World& world, int32_t slot, const NeighborQuery& query, Vec2 forward,
+                            double* answer) {
+  const WorldState& state = world.state;
+  int32_t count = 0, kin = 0, oldest = -1;
+  float least = query.range * query.range;
+  Vec2 nearest{};
+  const auto find = [&](Vec2 apart, int32_t id) {
+    const float squared = squared_length(apart);
+    if (count++ > 0 && (squared > least || (squared == least && !(id < oldest)))) return;
+    nearest = apart;
+    least = squared;
+    oldest = id;
+  };
+  for_each_agent_near(world, slot, query, [&](int32_t other, Vec2 apart) {
+    kin += are_kin(world, slot, other);
+    find(apart, state.life[other].agent_id);
+  });
+  if (query.types >> world.shape->species != 0)
+    for_each_food_near(world, slot, query, [&](Vec2 apart) { find(apart, INT32_MAX); });
+  answer[0] = count;
+  answer[1] = kin;
+  answer[2] = count > 0 ? sqrt(static_cast<double>(least)) : static_cast<double>(query.range);
+  answer[3] = count > 0 ? atan2_double(cross(forward, nearest), dot(forward, nearest)) : 0.0;
+}
+
+/// Answers all queries about the agent in `slot`, for its channels. `forward` is its heading, a unit vector.
+HEDON_FN void look_around(const World& world, int32_t slot, Vec2 forward) {
   const FixedList<NeighborQuery, MAX_QUERIES>& queries = world.species(slot).layout.neighbors;
+  double* answers = &world.scratch.near[int64_t{slot} * world.shape->near];
   for (int32_t q = 0; q < queries.count; ++q)
-    ask_neighbors(world, slot, queries[q], &world.scratch.near[int64_t{slot} * world.shape->near + q * QUERY_NUMBERS]);
+    ask_neighbors(world, slot, queries[q], forward, answers + q * QUERY_NUMBERS);
+}
+
+/// What the agents that a query finds when a step is done ate in it, in meals.
+HEDON_FN int32_t count_meals_near(const World& world, int32_t slot, const NeighborQuery& query) {
+  int32_t count = 0;
+  for_each_agent_near(world, slot, query, [&](int32_t other, Vec2) {
+    for (int32_t m = 0; m < world.shape->meals(); ++m) count += world.meal(other)[m];
+  });
+  return count;
 }
 
 }  // namespace hedon

@@ -8,7 +8,6 @@
 #include "base/device.h"
 #include "world/chance.h"
 #include "world/channel.h"
-#include "world/neighborhood.h"
 #include "world/world.h"
 
 namespace hedon {
@@ -105,7 +104,6 @@ HEDON_FN double answered_chance(const World& world, int32_t s, int32_t i) {
 HEDON_FN double ask_chance(World& world, int32_t slot, RuleUse use) {
   const int32_t s = world.shape->species_of(slot);
   world.scratch.asked[0] = slot;
-  look_around(world, slot);
   ask(world, s, use, 1);
   return answered_chance(world, s, 0);
 }

@@ -36,6 +36,7 @@ HEDON_FN void sense_body(const World& world, int32_t slot, PackedObservation& ou
   out.touch = world.state.touch[slot];
   if (species.network.observation.wide()) extra_of(out).touch = world.state.touch_more[slot];
   if (species.layout.smells.count > 0) smell(world, slot, forward_of(world, slot));
+  if (species.layout.neighbors.count > 0) look_around(world, slot, forward_of(world, slot));
   for (int32_t d = observed.count; d < MAX_DENSE; ++d) out.dense[d] = 0.0f;
   for (int32_t d = 0; d < observed.count; ++d) set_dense(out, d, read_channel(world, slot, out, observed[d]));
 }

@@ -60,7 +60,7 @@ struct StepScratch {
   Array<double> claim_gain;      ///< energy, where all claims are settled at once
   Array<double> record, answer;  ///< of the agents that a rule is asked about, one after another
   Array<int32_t> asked;          ///< their slots
-  Array<double> near;            ///< by slot: what the queries of its rules found
+  Array<double> near;            ///< by slot: what its queries found as the step began
   Array<int32_t> parent;
   Array<uint32_t> parent_key;
 
@@ -80,8 +80,8 @@ struct StepScratch {
                (claim_eater, claims, one, scratch), (claim_prey, claims, one, scratch),
                (claim_of, hunted_slots, one, scratch), (claim_distance, claims, one, scratch),
                (claim_gain, claims, one, scratch), (record, ruled_slots, record, scratch),
-               (answer, ruled_slots, one, scratch), (asked, ruled_slots, one, scratch),
-               (near, ruled_slots, near, scratch), (parent, slots, one, scratch), (parent_key, slots, one, scratch))
+               (answer, ruled_slots, one, scratch), (asked, ruled_slots, one, scratch), (near, slots, near, scratch),
+               (parent, slots, one, scratch), (parent_key, slots, one, scratch))
 };
 
 /// Answers for `count` agents: reads and may change their records, one after another, and writes a number for each.

@@ -1,5 +1,7 @@
 """Channels: what is paid for, observed, or opens a gate, by name; and what is refused of it."""
 
+import math
+
 import numpy as np
 import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
@@ -85,8 +87,9 @@ def test_what_is_kept_of_a_step_survives_a_checkpoint(channel: str, array: str, 
 
 
 def test_neither_threads_nor_worlds_change_what_channels_say() -> None:
-    settings = (*FERTILE, *pay("near_agent"), *pay("meals_near", "shared"), "sensor.observes.near_normal=5")
-    settings += ("sensor.observes.touched=6", "sensor.observes.meals_near=1")
+    settings = (*FERTILE, *pay("all_kin"), *pay("all_meals", "shared"), "sensor.observes.food_distance=5")
+    settings += ("sensor.observes.touched=6", "sensor.observes.all_meals=1")
+    settings += ("neighbor.all.range=80", 'neighbor.food.of=["normal"]')
     alone = make_simulation(*settings, seeds=[3])
     together = make_simulation(*settings, seeds=[2, 3], threads=2)
     for simulation in (alone, together):
@@ -96,15 +99,24 @@ def test_neither_threads_nor_worlds_change_what_channels_say() -> None:
 
 
 def test_others_are_near_within_the_range_and_no_further() -> None:
-    plain = (*QUICK, *STILL, *DEATHLESS, *CHILDLESS, *ALIKE, "food.normal.growth_rate=0", "sensor.near_range=50")
+    plain = (*QUICK, *STILL, *DEATHLESS, *CHILDLESS, *ALIKE, "food.normal.growth_rate=0", "neighbor.close.range=50")
+    of = ('neighbor.grain.of=["normal"]', "neighbor.grain.range=50", 'neighbor.all.of=["normal", "*"]')
+    names = ("close_count", "grain_count", "all_count", "grain_distance", "grain_bearing", "all_distance")
     simulation = make_simulation(
-        *plain, *pay("near_agent"), *(f"sensor.observes.near_{k}=1" for k in ("agent", "normal"))
+        *plain, *of, *pay("all_count"), "neighbor.all.range=50", *(f"sensor.observes.{each}=1" for each in names)
     )
     agents = [(100, 100, 0.0), (149.9, 100, 1.0), (150.1, 100.0, 2.0), (100, 300, 0.0)]
     set_scene(simulation, agents, [(100, 140), (100, 151), (70, 70)])
-    assert observed(simulation, "near_agent", "near_normal").tolist() == [[1, 2], [2, 0], [1, 0], [0, 0]]
+    ahead, behind = 0.0, math.atan2(30, -30)  # of the grain at (100, 140) and at (70, 70)
+    seen = observed(simulation, *names)
+    assert seen[:, :3].tolist() == [[1, 2, 3], [2, 0, 2], [1, 0, 1], [0, 0, 0]]
+    np.testing.assert_allclose(seen[:, 3], [40, 50, 50, 50])
+    np.testing.assert_allclose(seen[:, 4], [ahead, 0, 0, 0], atol=1e-6)
+    np.testing.assert_allclose(seen[:, 5], [40, 0.2, 0.2, 50], atol=1e-4)
+    set_scene(simulation, agents, [(70, 70)])
+    np.testing.assert_allclose(observed(simulation, *names)[0, 3:5], [math.hypot(30, 30), math.pi / 2 + behind / 3])
     simulation.run(1)
-    assert rewards(simulation, 0).tolist() == [1, 2, 1, 0]
+    assert rewards(simulation, 0).tolist() == [2, 2, 1, 0]
 
 
 def test_the_year_is_that_of_the_first_schedule_or_its_own() -> None:
@@ -154,7 +166,8 @@ def test_a_rule_gets_a_paid_channel_once_where_it_knows_it_already() -> None:
 
 
 @pytest.mark.parametrize(
-    ("source", "index"), [("meals", 1), ("damage", 0), ("waits", 0), ("near", 2), ("last", 0), ("contacts", 3)]
+    ("source", "index"),
+    [("meals", 1), ("damage", 0), ("waits", 0), ("neighbor", 0), ("neighbor_meals", 0), ("last", 0), ("contacts", 3)],
 )
 def test_the_engine_refuses_a_number_that_a_source_does_not_have(source: str, index: int) -> None:
     native = engine_input(load_config("baseline", overrides=["reward.pay.moved={}"]))

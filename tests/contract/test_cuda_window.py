@@ -57,12 +57,13 @@ MECHANISMS = {
     "channels": (
         *(
             "reward.pay.births.coef=1",
-            "reward.pay.meals_near.coef=0.5",
+            "reward.pay.all_meals.coef=0.5",
             "reward.pay.touched.coef=0.1",
             "birth.kappa=0.5",
         ),
-        *("reward.family=around", "reward.gate=near_normal", "reward.threshold=2", "sensor.observes.moved=1"),
-        *("sensor.observes.energy_change=0.1", "sensor.observes.near_agent=5", "sensor.observes.season_sine=1"),
+        *("reward.family=around", "reward.gate=grain_count", "reward.threshold=2", "sensor.observes.moved=1"),
+        *("sensor.observes.energy_change=0.1", "sensor.observes.all_bearing=3", "sensor.observes.season_sine=1"),
+        *("neighbor.all={}", 'neighbor.grain.of=["normal"]', "reward.pay.all_kin.coef=0.2"),
         "sensor.season_period=9",
     ),
     "births by stores": (

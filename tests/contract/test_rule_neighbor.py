@@ -1,4 +1,4 @@
-"""Queries about neighbors, and genes that only rules read: what rules get, against a count of all pairs."""
+"""Queries about neighbors as rules read them, against a count of all pairs; and genes that only rules read."""
 
 import math
 
@@ -17,7 +17,7 @@ from hedon.report.analysis import analyze
 
 pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
 
-NUMBERS = ("count", "kin", "distance", "bearing")
+NUMBERS = ("count", "kin", "distance", "bearing", "meals")
 LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=60", "population.initial_count=40")
 ARENA = ("arena.width=300", "arena.height=300")
 
@@ -39,17 +39,28 @@ def wrapped(angle):
     return (angle + math.pi) % (2 * math.pi) - math.pi
 
 
+def distances(world, of=None):
+    """From every agent (row) to every other one of some species, infinite to the rest."""
+    agents = world.agents()
+    x, y = (world.view(f"physics.bodies.{name}")[world.living].astype(float) for name in ("x", "y"))
+    apart = np.hypot(x - x[:, None], y - y[:, None])
+    np.fill_diagonal(apart, np.inf)
+    if of is not None:
+        apart[:, ~np.isin(agents["species"], of)] = np.inf
+    return apart
+
+
+def near(world, reach, of=None):
+    return distances(world, of) <= reach
+
+
 def found(world, reach, of=None):
-    """The four numbers of every agent, by all pairs."""
+    """The numbers of every agent as a step begins, by all pairs."""
     agents = world.agents()
     x, y, angle = (world.view(f"physics.bodies.{name}")[world.living].astype(float) for name in ("x", "y", "angle"))
     rows = []
-    for i in range(len(x)):
-        apart = np.hypot(x - x[i], y - y[i])
-        apart[i] = np.inf
-        if of is not None:
-            apart[~np.isin(agents["species"], of)] = np.inf
-        near = apart <= reach
+    for i, apart in enumerate(distances(world, of)):
+        close = apart <= reach
         parent = agents["parent_id"]
         kin = (
             (parent == agents["agent_id"][i])
@@ -57,46 +68,51 @@ def found(world, reach, of=None):
             | ((parent == parent[i]) & (parent >= 0))
         )
         j = int(np.argmin(apart))
-        bearing = wrapped(math.atan2(y[j] - y[i], x[j] - x[i]) - math.pi / 2 - angle[i]) if near.any() else 0.0
-        rows.append((near.sum(), (near & kin).sum(), apart[j] if near.any() else reach, bearing))
+        bearing = wrapped(math.atan2(y[j] - y[i], x[j] - x[i]) - math.pi / 2 - angle[i]) if close.any() else 0.0
+        rows.append((close.sum(), (close & kin).sum(), apart[j] if close.any() else reach, bearing))
     return np.array(rows)
 
 
 @pytest.mark.parametrize(("of", "reach"), [(["*"], 40.0), (["odd"], 120.0), (["plain"], 1e4)])
 def test_a_query_finds_who_is_near(file, of, reach):
-    """Nobody is born or dies in the step that is compared: its rule saw the same agents, at the same places."""
-    settings = (*LIVELY, *ARENA, "species.plain.body.radius=8", f'species.odd.reward.rule="{file}:copy"')
+    """Nobody is born or dies in the step that is compared, so meals are those of the agents that were there."""
+    food = ("food.normal.capacity=200", "food.normal.initial_count=200", "food.normal.growth_rate=1")
+    settings = (*LIVELY, *ARENA, *food, "species.plain.body.radius=8", f'species.odd.reward.rule="{file}:copy"')
     names = ", ".join(f'"{name}"' for name in of)
-    settings += ("species.odd.reward.memory=4", f"species.odd.neighbor.near={{of=[{names}], range={reach}}}")
+    settings += ("species.odd.reward.memory=5", f"species.odd.neighbor.near={{of=[{names}], range={reach}}}")
     simulation = make_simulation(*settings, seeds=(5,))
-    world, compared, kin = simulation.worlds[0], 0, 0
+    world, compared, kin, meals = simulation.worlds[0], 0, 0, 0
     for _ in range(200):
-        before = world.counters
+        before, species = world.counters, None if of == ["*"] else [["plain", "odd"].index(name) for name in of]
+        wanted, eaten = found(world, reach, species), world.agents()["eaten"].sum(axis=1)
         simulation.run(1)
         if (before["births"], before["deaths"]) != (world.counters["births"], world.counters["deaths"]):
             continue
         mine = world.agents()["species"] == 1
-        species = None if of == ["*"] else [["plain", "odd"].index(name) for name in of]
-        wanted, got = found(world, reach, species)[mine], world.view("memory")[world.living][mine]
+        wanted, got = wanted[mine], world.view("memory")[world.living][mine]
+        fed = world.agents()["eaten"].sum(axis=1) - eaten
+        np.testing.assert_array_equal(got[:, 4], (near(world, reach, species) @ fed)[mine])
         np.testing.assert_array_equal(got[:, :2], wanted[:, :2])
         np.testing.assert_allclose(got[:, 2], wanted[:, 2], rtol=1e-6)
         np.testing.assert_allclose(wrapped(got[:, 3] - wanted[:, 3]), 0.0, atol=1e-5)
         compared += len(got)
         kin += int(wanted[:, 1].sum())
+        meals += int(got[:, 4].sum())
     assert compared > 500
     assert kin > 10 or of == ["plain"]
+    assert meals > 10
 
 
 def test_bearings_are_counter_clockwise_from_the_heading(file):
-    settings = (*QUICK, *DEATHLESS, *CHILDLESS, *STILL, "reward.memory=4", "neighbor.near.range=60")
+    settings = (*QUICK, *DEATHLESS, *CHILDLESS, *STILL, "reward.memory=5", "neighbor.near.range=60")
     simulation = make_simulation(*settings, f'reward.rule="{file}:copy"')
     quarter = math.pi / 2
     for angle, place, bearing in ((0, (100, 150), 0), (0, (50, 100), quarter), (quarter, (100, 150), -quarter)):
         set_scene(simulation, [(100, 100, angle), (*place, 0), (300, 300, 0)])
         simulation.run(1)
         memory = simulation.worlds[0].view("memory")[simulation.worlds[0].living]
-        np.testing.assert_allclose(memory[0], [1, 0, 50, bearing], atol=1e-4)
-        np.testing.assert_allclose(memory[2], [0, 0, 60, 0])
+        np.testing.assert_allclose(memory[0, :4], [1, 0, 50, bearing], atol=1e-4)
+        np.testing.assert_allclose(memory[2, :4], [0, 0, 60, 0])
 
 
 def test_threads_and_checkpoints_change_nothing(file):
@@ -143,7 +159,8 @@ def test_a_neutral_marker_is_refused_with_what_to_use(file):
     ("settings", "says"),
     [
         (["genome.extra.kindness={}"], r"genome\.extra: only a rule in Python reads this: give reward\.rule or hazard"),
-        (["neighbor.near={}"], r"neighbor: only a rule in Python reads this"),
+        (["neighbor.near={}"], r"neighbor\.near: nothing reads its channels, such as near_count: sensor\.observes"),
+        (["sensor.observes.near_prey=1"], r"no channel 'near_prey' here; \[neighbor\.NAME\] asks who is near"),
         (['reward.rule="a.py:b"', "genome.extra.Kind={}"], r"genome\.extra\.Kind: a name must have only a-z"),
         (['reward.rule="a.py:b"', 'neighbor."a b"={}'], r"neighbor\.a b: a name must have only a-z"),
         (['reward.rule="a.py:b"', 'neighbor.near.of=["agnt"]'], r"neighbor\.near\.of = \"agnt\".*did you mean agent"),

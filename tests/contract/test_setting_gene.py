@@ -55,7 +55,7 @@ WORLD = (
     *(
         "sensor.mouth_spread=80",
         "sensor.mouth_center=20",
-        "sensor.observes={near_plain=3}",
+        "sensor.observes={moved=3}",
         "sensor.ray_length=70",
         "genome.mutation_scale=0",
         "genome.neutral_count=0",

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 from reference.chance import harmful
+from reference.neighbor import meals_near, neighbors
 from reference.setting import Rules, Species
 from reference.state import Agent, Turn, World
 
-OF_STEP = ("_before", "_change", "eaten_", "damage", "effort", "force", "meals_near", "moved", "drive_reduction")
+OF_STEP = ("_before", "_change", "eaten_", "damage", "effort", "force", "_meals", "moved", "drive_reduction")
 """How names begin or end of what is known only when a step is done."""
 
 
@@ -39,14 +40,16 @@ def channel(rules: Rules, world: World, turn: Turn, name: str) -> float:
     if head == "season":
         angle = 2 * math.pi * world.step / year(rules, species)
         return math.sin(angle) if what == "sine" else math.cos(angle)
-    if head == "near":
-        return count_near(rules, turn, what)
+    for query in (query for query in species.neighbor if name.startswith(f"{query}_")):
+        number = name.removeprefix(f"{query}_")
+        if number == "meals":
+            return meals_near(rules, turn, species.neighbor[query])
+        return neighbors(rules, turn.before, turn.start, species.neighbor[query])[number]
     left, right = turn.forces
     plain = {
         "damage": lambda: rules.obstacle.damage * sum(each < harmful(rules, world.step) for each in deed.obstacles),
         "nearness": lambda: float(np.maximum(deed.seen, 0).sum(axis=1).mean()),
         "touched": lambda: felt_sectors(species, turn, range(len(species.touches))),
-        "meals_near": lambda: count_meals_near(species, turn),
         "effort": lambda: math.hypot(left, right) / (species.max_force * math.sqrt(2)),
         "force_left": lambda: left,
         "force_right": lambda: right,
@@ -87,24 +90,6 @@ def felt_sectors(species: Species, turn: Turn, types: range | list[int]) -> floa
     return float(np.bitwise_or.reduce(felt).item().bit_count())
 
 
-def count_near(rules: Rules, turn: Turn, kind: str) -> float:
-    """How many others of a kind had their centers near that of the agent when the step began."""
-    before, start, reach = turn.before, turn.start, rules.of(turn.agent).sensor.near_range
-    foods = zip(rules.kinds, before.stocks, strict=True)
-    places = [place for name, stock in foods if name == kind for place in stock.foods]
-    places += [(x, y) for x, y, k in before.eaten_foods if rules.kinds[k] == kind]
-    others = (each for each in before.agents if each.agent_id != start.agent_id and rules.names[each.species] == kind)
-    places += [(each.x, each.y) for each in others]
-    return float(sum(math.dist(place, (start.x, start.y)) <= reach for place in places))
-
-
-def count_meals_near(species: Species, turn: Turn) -> float:
-    """What others of its species ate in the step whose centers are near that of the agent."""
-    others = (each for each in turn.company if each is not turn and each.agent.species == turn.agent.species)
-    here, reach = (turn.agent.x, turn.agent.y), species.sensor.near_range
-    return float(sum(sum(each.meal) for each in others if math.dist((each.agent.x, each.agent.y), here) <= reach))
-
-
 def year(rules: Rules, species: Species) -> int:
     """The length of the year that a species knows: its own, or that of the first schedule with a period."""
     schedules = [food.schedule for food in rules.foods] + [species.hazard.schedule, rules.obstacle.schedule]
@@ -112,8 +97,10 @@ def year(rules: Rules, species: Species) -> int:
     return next(period for period in periods if period)
 
 
-PLACED = ("x", "y", "moved", "meals_near", "touched", "contacts_", "velocity_", "angular_velocity", "heading")
+PLACED = ("x", "y", "moved", "touched", "contacts_", "velocity_", "angular_velocity", "heading")
 """How names begin of what depends on where a step ended."""
+COMPANY = "_meals"
+"""How names end of what depends on where all others ended."""
 
 
 def paid_names(species: Species) -> list[str]:
@@ -121,10 +108,10 @@ def paid_names(species: Species) -> list[str]:
     return [species.reward.gate, *(pay.channel or name for name, pay in species.reward.pay.items())]
 
 
-def is_paid_by_place(species: Species) -> bool:
-    """Whether the reward depends on where a step ended."""
-    paid = paid_names(species)
-    return any(name.startswith(PLACED) for name in paid)
+def is_paid_by_place(species: Species, others: bool) -> bool:
+    """Whether the reward depends on where a step ended for the agent itself, or for the others."""
+    found = ((name.endswith(COMPANY) if others else name.startswith(PLACED)) for name in paid_names(species))
+    return any(found)
 
 
 def kept_names(species: Species) -> list[str]:

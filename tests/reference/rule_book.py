@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 from reference.chance import birth_chance, death_chance
+from reference.neighbor import meals_near, neighbors
 from reference.reward import inputs, reward
 from reference.setting import Rules, Species
-from reference.state import Agent, Turn, World
+from reference.state import Turn, World
 
 
 def function_of(place: str) -> Callable[[Any], float] | None:
@@ -64,31 +65,10 @@ class RuleBook:
         told["nearness"] = float(np.maximum(turn.deed.seen, 0).sum(axis=1).mean())
         told["force_left"], told["force_right"] = turn.forces
         for name, query in species.neighbor.items():
-            told |= {f"{name}_{what}": number for what, number in neighbors(self.rules, world, agent, query).items()}
+            found = neighbors(self.rules, turn.before, start, query) | {"meals": meals_near(self.rules, turn, query)}
+            told |= {f"{name}_{what}": number for what, number in found.items()}
         told["alive"] = sum(each.species == agent.species for each in world.agents)
         return SimpleNamespace(**told, **{f"memory_{m + 1}": value for m, value in enumerate(agent.memory)})
-
-
-def neighbors(rules: Rules, world: World, agent: Agent, query: Any) -> dict[str, float]:
-    """What a query finds around an agent."""
-    found = [
-        (math.dist((other.x, other.y), (agent.x, agent.y)), other.agent_id, other)
-        for other in world.agents
-        if other is not agent and ("*" in query.of or rules.of(other).name in query.of)
-    ]
-    near = sorted(each for each in found if each[0] <= query.range)
-    told: dict[str, float] = {"count": len(near), "kin": sum(are_kin(agent, other) for *_, other in near)}
-    if not near:
-        return told | {"distance": query.range, "bearing": 0.0}
-    distance, _, other = near[0]
-    toward = math.atan2(other.y - agent.y, other.x - agent.x) - (agent.angle + math.pi / 2)
-    return told | {"distance": distance, "bearing": math.remainder(toward, 2 * math.pi)}
-
-
-def are_kin(agent: Agent, other: Agent) -> bool:
-    """Whether one is a parent of the other, or both have a parent in common."""
-    mine, its = ({each.parent_id, each.mate_id} - {-1} for each in (agent, other))
-    return bool(mine & its) or agent.agent_id in its or other.agent_id in mine
 
 
 def memory_of(species: Species) -> list[float]:

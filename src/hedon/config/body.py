@@ -131,14 +131,6 @@ class SensorConfig:
         each=(1e-6, 1e6),
         derived=True,
     )
-    near_range: float = setting(
-        50.0,
-        "distance of centers within which the channels near_NAME and meals_near count others",
-        "u",
-        OURS,
-        gt=0,
-        le=1e5,
-    )
     season_period: int = setting(
         0,
         "steps of the year whose time season_sine and season_cosine tell; 0: of the first schedule with a period",

@@ -41,14 +41,14 @@ class Source:
 
 SEVERAL: dict[str, tuple[tuple[str, ...], str]] = {
     "stores": (("<store>",), "of each store, energy too"),
-    "kinds": (("<kind>",), "of each species and each kind of food"),
     "meals": (("<meal>",), "of each kind of food and each species that it eats"),
     "sees": (("<type>",), "of each type that it sees"),
     "smells": (("<type>",), "of each type that it smells"),
     "noses": (("<type>_<nose>",), "of each type that it smells, and each nose from 0 on"),
     "touches": (("<type>",), "of each type that it collides with"),
     "season": (("sine", "cosine"), "where a schedule has a period, or with sensor.season_period"),
-    "queries": (tuple(f"<query>_{number}" for number in NUMBERS), "of each query, for rules alone"),
+    "answers": (tuple(f"<query>_{number}" for number in NUMBERS), "of each query"),
+    "queries": (("<query>",), "of each query"),
     "harm": (("",), "where there are obstacles"),
     "mates": (("",), 'with birth.mating = "pairs"'),
     "drive": (("",), "with reward.drive_reduction_coef"),
@@ -71,8 +71,6 @@ SOURCES = {
     "smell_mean": Source("smell_{}", "mean over the noses of the smell of {}, in [0, 1]", of="smells"),
     "contacts": Source("contacts_{}", "touch sectors that feel {}", of="touches"),
     "touched": Source("touched", "touch sectors that feel anything"),
-    "near": Source("near_{}", "others of {} within sensor.near_range", of="kinds"),
-    "meals_near": Source("meals_near", "meals of others of its species within sensor.near_range", of_step=True),
     "effort": Source("effort", "norm of the forces of both motors, as a share of its largest", of_step=True),
     "force": Source("force_{}", "force of the {} motor", "mass·u/s²", ("left", "right"), True),
     "force_norm": Source("force", "norm of the forces of both motors", "mass·u/s²", of_step=True),
@@ -87,12 +85,11 @@ SOURCES = {
     "season": Source("season_{}", "{} of the time of the year", of="season"),
     "step": Source("step", "steps that the world had done before the present one", "step"),
     "alive": Source("alive", "living agents of its species"),
-    "neighbor": Source("{}", "{} as a query of rules found it", of="queries", of_step=True),
+    "neighbor": Source("{}", "{}, as the query finds it when the step begins", of="answers"),
+    "neighbor_meals": Source("{}_meals", "meals, in the step, of those that {} finds", of="queries", of_step=True),
     "one": Source("one", "1 in every step"),
 }
 """Where the engine reads channels, by its names of the sources."""
-QUERY = "neighbor"
-"""The source of what queries found, which is known to rules alone: they are answered when rewards have been paid."""
 LAST = "last"
 """The source of what was known of the step before: the engine keeps it for the next observation."""
 RECORDED = (
@@ -144,14 +141,14 @@ def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
     eaten, smells = diet(config, species), smelled(config, species.sensor.smells)
     names: dict[str, Sequence[str | None]] = {
         "stores": tuple(species.stores),
-        "kinds": (*config.species, *config.food),
         "meals": [name if name in eaten else None for name in (*config.food, *config.species)],
         "sees": chosen(config, species.sensor.sees),
         "smells": smells,
         "noses": [f"{name}_{nose}" for name in smells for nose in range(species.sensor.noses)],
         "touches": chosen(config, species.body.collides),
         "season": ("sine", "cosine") if season_place(config, species) else (),
-        "queries": [f"{name}_{number}" for name in species.neighbor for number in NUMBERS],
+        "answers": [f"{name}_{number}" for name in species.neighbor for number in NUMBERS],
+        "queries": tuple(species.neighbor),
         "harm": ("",) * (config.obstacle.count > 0),
         "mates": ("",) * (species.birth.mating == "pairs"),
         "drive": ("",) * (species.reward.drive_reduction_coef != 0),
@@ -196,7 +193,7 @@ def called(known: Channels, name: str) -> list[Channel]:
         known: all channels of a species.
         name: as a user gives it.
     """
-    return [channel for channel in known.values() if channel.name == name and channel.source != QUERY]
+    return [channel for channel in known.values() if channel.name == name]
 
 
 def plain_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel, ...]:
@@ -254,4 +251,5 @@ def recorded_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel,
         known: all its channels.
     """
     stores = [known[source, i + 1] for i in range(len(species.store)) for source in ("store_before", "store")]
-    return (*(known[each] for each in RECORDED), *stores, *(each for each in known.values() if each.source == QUERY))
+    asked = (each for each in known.values() if each.source in ("neighbor", "neighbor_meals"))
+    return (*(known[each] for each in RECORDED), *stores, *asked)

@@ -9,6 +9,7 @@ from hedon.config.evolution import GATED
 from hedon.config.expression import NO_GENE, expressed, settable
 from hedon.config.field import leaves, value_at
 from hedon.config.layout import Gene, layout_of, rule_columns, store_columns
+from hedon.config.neighbor import MEALS, NUMBERS
 from hedon.config.problem import Check, nearest, single
 from hedon.config.room import MAX_FORCE, MAX_GENES, MAX_OBSERVED, MAX_QUERIES, MAX_SPECIES, MAX_STORES, MAX_TOUCH_BITS
 from hedon.config.rule_path import RULE_PATTERN
@@ -32,6 +33,7 @@ NAME_RULE = "a name must have only a-z, 0-9 and _, start with a letter, have at 
 RESERVED_STARTS = ("eaten_", "w_", "g_", "neutral_", "extra_", "set_point")
 """How names of meals and genes begin in the records."""
 CHANNEL_SETTINGS = {
+    "near_": "[neighbor.NAME] asks who is near, and gives NAME_count",
     "season_": "sensor.season_period gives a year where no schedule does",
     "see_": "sensor.sees says what it sees",
     "smell_": "sensor.smells says what it smells",
@@ -162,17 +164,22 @@ def _known(check: Check, path: str, names: Sequence[str], known: Sequence[str]) 
 
 
 def _for_rules(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
-    """What only rules read: genes of their own, and queries about neighbors."""
+    """What something must read: genes that only rules read, and queries about neighbors."""
     ruled = any(getattr(species, use).rule for use in RULE_USES)
-    rule = "only a rule in Python reads this: give " + " or ".join(f"{use}.rule" for use in RULE_USES)
+    rules = " or ".join(f"{use}.rule" for use in RULE_USES)
     for section, table in (("genome.extra", species.genome.extra), ("neighbor", species.neighbor)):
         for name in table:
             if not re.fullmatch(NAME, name):
                 check.add(f"{path}{section}.{name}", NAME_RULE)
-        if table and not ruled:
-            check.add(f"{path}{section}", rule)
+    if species.genome.extra and not ruled:
+        check.add(f"{path}genome.extra", f"only a rule in Python reads this: give {rules}")
+    reward = species.reward
+    read = {*species.sensor.observes, reward.gate, *(pay.channel or name for name, pay in reward.pay.items())}
     for name, query in species.neighbor.items():
-        _known(check, f"{path}neighbor.{name}.of", query.of, list(config.species))
+        _known(check, f"{path}neighbor.{name}.of", query.of, [*config.species, *config.food])
+        if not ruled and not read & {f"{name}_{number}" for number in (*NUMBERS, MEALS)}:
+            rule = f"nothing reads its channels, such as {name}_count: sensor.observes, reward.pay and reward.gate do"
+            check.add(f"{path}neighbor.{name}", f"{rule}, and {rules}")
     if len(species.neighbor) > MAX_QUERIES:
         check.add(f"{path}neighbor", f"there must be at most {MAX_QUERIES} queries, not {len(species.neighbor)}")
 
@@ -266,11 +273,8 @@ def _settable(check: Check, species: SpeciesConfig, place: str, path: str) -> No
 
 def _idle(species: SpeciesConfig) -> dict[str, str]:
     """Numbers that do nothing in a species, with the reason."""
-    birth, sensor, reward = species.birth, species.sensor, species.reward
-    channels = (*sensor.observes, reward.gate, *(pay.channel or name for name, pay in reward.pay.items()))
-    near = any(name.startswith("near_") or name == "meals_near" for name in channels)
+    birth, sensor = species.birth, species.sensor
     found = {
-        "sensor.near_range": "" if near else "nothing reads the channels near_NAME or meals_near",
         "sensor.smell_decay": "" if sensor.smells else "it smells nothing: give sensor.smells",
         "sensor.nose_angle": "" if sensor.noses == 2 else "its nose lies ahead: give sensor.noses = 2",
         "birth.network_noise": "" if birth.network != "none" else "children inherit no network: give birth.network",

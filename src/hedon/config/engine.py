@@ -12,8 +12,8 @@ from hedon.config.expression import engine_name, gene_column, kind_of
 from hedon.config.field import engine_sections, engine_settings, leaves, settings
 from hedon.config.layout import Gene, layout_of, set_point_of
 from hedon.config.life import distance_sd
-from hedon.config.species import EVERYTHING, RULE_USES, SpeciesConfig
-from hedon.config.type import diet, types
+from hedon.config.species import RULE_USES, SpeciesConfig
+from hedon.config.type import asked_for, diet, types
 
 if TYPE_CHECKING:
     import numpy as np
@@ -168,7 +168,7 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
         "season_period": _season(config, path, species),
         "neighbors": [
             {
-                "species": sum(1 << i for i, each in enumerate(config.species) if {each, EVERYTHING} & {*query.of}),
+                "types": sum(1 << number[each] for each in asked_for(config, query.of)),
                 "range": _Path(f"{path}neighbor.{asked}.range"),
             }
             for asked, query in species.neighbor.items()

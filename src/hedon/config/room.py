@@ -13,7 +13,7 @@ MAX_TOUCH_BITS = 128
 MAX_STORES = 8
 """Most stores of a species, energy among them."""
 MAX_QUERIES = 4
-"""Most queries that the rules of a species ask about its neighbors."""
+"""Most queries of a species about its neighbors."""
 MAX_OBSERVED = 15
 """Most that a species observes of its stores, and of smells times noses, together."""
 MAX_GENES = 64

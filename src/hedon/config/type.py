@@ -63,6 +63,17 @@ def chosen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
     return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
 
 
+def asked_for(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
+    """The types that a query finds by a list of names, in order: species and kinds of food.
+
+    Args:
+        config: with the types.
+        names: of types, or `EVERYTHING` for every species.
+    """
+    every = config.species if EVERYTHING in names else ()
+    return tuple(name for name in (*config.species, *config.food) if name in names or name in every)
+
+
 def smelled(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
     """The sources of smell that a list of names stands for, in order: species and kinds of food.
 
