@@ -187,6 +187,35 @@ def test_slopes_of_prey_by_group_of_founders(outcome, weight, label):
         assert f"{span(values)}, p {p_of(values):.2f}" in row
 
 
+def test_fear_by_the_sequels_senses():
+    """Two named tests over forty groups, each group with predators and without; and what was seen afterwards."""
+    weights, shown, named = FOUNDERS["predator"], page("predator.md"), []
+    for outcome, label in (("offspring", "children"), ("descendants", "living descendants")):
+        by_world = [slopes(f"predator/fear/{name}.parquet", weights, outcome) for name in ("predator", "prey-alone")]
+        assert [list(each) for each in by_world] == [list(range(11, 51))] * 2
+        with_them, without = (np.array(list(each.values())) for each in by_world)
+        named.append((label, with_them[:, 3], without[:, 3]))
+        row = " | ".join(span(each[:, 2]) for each in (with_them, without, with_them - without))
+        assert f"| {label}: seeing prey | {row} | not named |" in shown
+    differences = [one - other for _, one, other in named]
+    p = [p_of(each) for each in differences]
+    for (label, one, other), difference, own, corrected in zip(named, differences, p, holm(p), strict=True):
+        row = f"| **{label}**: seeing predators | {span(one)} | {span(other)} | **{span(difference)}** |"
+        assert f"{row} {p_text(own)}, **{p_text(corrected)}** |" in shown
+        told = f"({'slope ' if label == 'children' else ''}{span(difference)[:-1].replace(' (', ', ')})"
+        assert told in page("../paper/paper.md").replace("\n", " ")
+    founders = table("predator/fear/predator.parquet")
+    relative = [pl.col(name) / pl.col(name).mean().over("seed") for name in ("offspring", "descendants")]
+    quarter = pl.col("w_see_predator").floor().clip(-2, 1).alias("quarter")
+    means = founders.select(quarter, *relative).group_by("quarter").mean().sort("quarter")
+    low, below, above, high = (" and ".join(f"{100 * each:.0f}" for each in row[1:]) for row in means.rows())
+    children, descendants = high.split(" and ")
+    assert f"above 1 have {children} % of the mean number of children and {descendants} % of its living" in shown
+    assert (
+        f"from 0 to 1 they have {above} %, from \N{MINUS SIGN}1 to 0 {below} %, below \N{MINUS SIGN}1 {low} %" in shown
+    )
+
+
 @pytest.mark.parametrize("outcome", ["offspring", "lifespan", "food", "descendants"])
 def test_slopes_with_seeing_obstacles(outcome):
     label = {"offspring": "children", "descendants": "living descendants"}.get(outcome, outcome)
