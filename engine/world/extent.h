@@ -35,8 +35,9 @@ enum class Extent : uint8_t {
   harmed,            ///< species, if there are obstacles
   obstacle_corners,  ///< two numbers for each corner of an obstacle
   circles,
-  cell_ends,   ///< cells of the ray grid, and one
-  candidates,  ///< for each member of a team: lists of circles that its rays may hit
+  query_circles,  ///< circles, if some species has queries about its neighbors
+  cell_ends,      ///< cells of the ray grid, and one
+  candidates,     ///< for each member of a team: lists of circles that its rays may hit
   genes,
   params,
   pairs,
@@ -154,6 +155,8 @@ HEDON_FN int64_t extent(const WorldShape& shape, Extent of, int64_t members) {
       return shape.obstacles > 0 ? 2 * (shape.walls - shape.first_obstacle) / shape.obstacles : 0;
     case Extent::circles:
       return shape.circles;
+    case Extent::query_circles:
+      return shape.near > 0 ? shape.circles : 0;
     case Extent::cell_ends:
       return int64_t{shape.scene.columns} * shape.scene.rows + 1;
     case Extent::candidates:

@@ -26,51 +26,28 @@ HEDON_FN bool are_kin(const World& world, int32_t slot, int32_t other) {
 /// Whether a query finds things of a type.
 HEDON_FN bool asks_for(const NeighborQuery& query, int32_t type) { return (query.types >> type & 1) != 0; }
 
-/// Calls f(other, apart) for the other living agents that a query finds around the agent in `slot`.
-template <class F>
-HEDON_FN void for_each_agent_near(const World& world, int32_t slot, const NeighborQuery& query, F&& f) {
-  const BodyState& body = world.state.physics.bodies;
-  const Vec2 center{body.x[slot], body.y[slot]};
-  for_each_body_near(world.state.physics, center.x, center.y, query.range, [&](int32_t other) {
-    if (other == slot || world.state.alive[other] == 0 || !asks_for(query, world.shape->species_of(other))) return;
-    const Vec2 apart = Vec2{body.x[other], body.y[other]} - center;
-    if (squared_length(apart) <= query.range * query.range) f(other, apart);
-  });
-}
-
-/// Calls f(apart) for the foods that a query finds around the agent in `slot`, with those just eaten if they are seen.
-template <class F>
-HEDON_FN void for_each_food_near(const World& world, int32_t slot, const NeighborQuery& query, F&& f) {
-  const RayScene& scene = world.scene;
-  const Vec2 center{world.state.physics.bodies.x[slot], world.state.physics.bodies.y[slot]};
-  for_each_circle_in(world, center, query.range, [&](int32_t i) {
-    const int32_t type = static_cast<int32_t>(scene.type[i]);
-    if (type < world.shape->species || !asks_for(query, type)) return;
-    const Vec2 apart = Vec2{scene.x[i], scene.y[i]} - center;
-    if (squared_length(apart) <= query.range * query.range) f(apart);
-  });
-}
-
-/// Answers one query about the agent in `slot` as a step begins. Of equally near agents, the oldest is the nearest.
+/// Answers one query about the agent in `slot` as a step begins, by the scene: foods just eaten count if they are seen.
+/// Of equally near agents the oldest is the nearest, then the first food.
 HEDON_FN void ask_neighbors(const World& world, int32_t slot, const NeighborQuery& query, Vec2 forward,
                             double* answer) {
-  const WorldState& state = world.state;
-  int32_t count = 0, kin = 0, oldest = -1;
+  const RayScene& scene = world.scene;
+  const int32_t own = scene.own[slot];
+  const Vec2 center{scene.x[own], scene.y[own]};
+  int32_t count = 0, kin = 0, oldest = INT32_MAX;
   float least = query.range * query.range;
   Vec2 nearest{};
-  const auto find = [&](Vec2 apart, int32_t id) {
+  for_each_circle_in(world, center, query.range, [&](int32_t i) {
+    const Vec2 apart = Vec2{scene.x[i], scene.y[i]} - center;
     const float squared = squared_length(apart);
-    if (count++ > 0 && (squared > least || (squared == least && !(id < oldest)))) return;
+    if (i == own || !asks_for(query, static_cast<int32_t>(scene.type[i])) || !(squared <= query.range * query.range))
+      return;
+    const int32_t other = scene.slot[i], id = other < 0 ? INT32_MAX : world.state.life[other].agent_id;
+    if (other >= 0) kin += are_kin(world, slot, other);
+    if (count++ > 0 && (squared > least || (squared == least && id >= oldest))) return;
     nearest = apart;
     least = squared;
     oldest = id;
-  };
-  for_each_agent_near(world, slot, query, [&](int32_t other, Vec2 apart) {
-    kin += are_kin(world, slot, other);
-    find(apart, state.life[other].agent_id);
   });
-  if (query.types >> world.shape->species != 0)
-    for_each_food_near(world, slot, query, [&](Vec2 apart) { find(apart, INT32_MAX); });
   answer[0] = count;
   answer[1] = kin;
   answer[2] = count > 0 ? sqrt(static_cast<double>(least)) : static_cast<double>(query.range);
@@ -85,10 +62,14 @@ HEDON_FN void look_around(const World& world, int32_t slot, Vec2 forward) {
     ask_neighbors(world, slot, queries[q], forward, answers + q * QUERY_NUMBERS);
 }
 
-/// What the agents that a query finds when a step is done ate in it, in meals.
+/// What the living agents of a query that are near when a step is done ate in it, in meals.
 HEDON_FN int32_t count_meals_near(const World& world, int32_t slot, const NeighborQuery& query) {
+  const BodyState& body = world.state.physics.bodies;
   int32_t count = 0;
-  for_each_agent_near(world, slot, query, [&](int32_t other, Vec2) {
+  for_each_body_near(world.state.physics, body.x[slot], body.y[slot], query.range, [&](int32_t other) {
+    if (other == slot || world.state.alive[other] == 0 || !asks_for(query, world.shape->species_of(other))) return;
+    const Vec2 apart{body.x[other] - body.x[slot], body.y[other] - body.y[slot]};
+    if (!(squared_length(apart) <= query.range * query.range)) return;
     for (int32_t m = 0; m < world.shape->meals(); ++m) count += world.meal(other)[m];
   });
   return count;

@@ -45,7 +45,7 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
   state.living[head.living_count++] = slot;
   state.life[slot] = Life{birth_step, -1, id, -1, 0, 0, energy, energy, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   const int32_t meals = world.shape->meals();
-  for (int32_t m = 0; m < meals; ++m) state.eaten[int64_t{slot} * meals + m] = 0;
+  for (int32_t m = 0; m < meals; ++m) state.eaten[int64_t{slot} * meals + m] = world.meal(slot)[m] = 0;
   state.touch[slot] = 0;
   if (state.touch_more.count > 0) state.touch_more[slot] = 0;
   if (world.shape->hunting) state.digestion[slot] = world.scratch.eaten[slot] = 0;

@@ -36,6 +36,7 @@ HEDON_FN void gather_scene(const Crew& crew, World& world) {
     const Vec2 place = place_of(circle);
     scene.x[at] = place.x;
     scene.y[at] = place.y;
+    if (scene.slot.count > 0) scene.slot[at] = circle < foods ? state.living[circle] : -1;
     if (circle < foods) {
       const int32_t slot = state.living[circle], s = shape.species_of(slot);
       scene.radius[at] = shape.own ? state.own[slot].body.radius : shape.of[s].body.radius;

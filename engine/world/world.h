@@ -18,14 +18,16 @@ struct RayScene {
   Array<float> x, y, radius, type;                  ///< of the circles: cell by cell, row by row of cells
   Array<int32_t> start;                             ///< first circle of each cell
   Array<int32_t> own;                               ///< index of the circle of the agent in each slot
+  Array<int32_t> slot;                              ///< of the agent that a circle is; -1 for a food
   Array<int32_t> cell;                              ///< of each circle, before sorting
   Array<float> wall_ax, wall_ay, wall_bx, wall_by;  ///< ends of the walls
   Array<int32_t> candidates;                        ///< see `RayCandidates`
 
   HEDON_ARRAYS(RayScene, (x, circles, one, scratch), (y, circles, one, scratch), (radius, circles, one, scratch),
                (type, circles, one, scratch), (start, cell_ends, one, scratch), (own, slots, one, scratch),
-               (cell, circles, one, scratch), (wall_ax, walls, one, derived), (wall_ay, walls, one, derived),
-               (wall_bx, walls, one, derived), (wall_by, walls, one, derived), (candidates, candidates, one, scratch))
+               (slot, query_circles, one, scratch), (cell, circles, one, scratch), (wall_ax, walls, one, derived),
+               (wall_ay, walls, one, derived), (wall_bx, walls, one, derived), (wall_by, walls, one, derived),
+               (candidates, candidates, one, scratch))
 };
 
 /// The result of an audit of one agent: `status` is ok if nothing is wrong.

@@ -20,6 +20,7 @@ pytest.importorskip("numba", reason='needs the optional package: pip install "he
 NUMBERS = ("count", "kin", "distance", "bearing", "meals")
 LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=60", "population.initial_count=40")
 ARENA = ("arena.width=300", "arena.height=300")
+PLENTY = ("food.normal.capacity=200", "food.normal.initial_count=200", "food.normal.growth_rate=1")
 
 
 @pytest.fixture
@@ -30,6 +31,7 @@ def file(tmp_path):
         f"def copy(agent):\n{copied}    return agent.linear\n\n"
         "def kind(agent):\n    return agent.linear + agent.extra_kindness * agent.near_kin\n\n"
         "def crowd(agent):\n    return min(1.0, agent.chance * (1.0 + agent.near_count))\n\n"
+        "def greed(agent):\n    return 1.0 if agent.normal + agent.near_meals > 0.0 else agent.chance\n\n"
         "def marked(agent):\n    return agent.neutral_1\n"
     )
     return tmp_path / "near.py"
@@ -76,8 +78,7 @@ def found(world, reach, of=None):
 @pytest.mark.parametrize(("of", "reach"), [(["*"], 40.0), (["odd"], 120.0), (["plain"], 1e4)])
 def test_a_query_finds_who_is_near(file, of, reach):
     """Nobody is born or dies in the step that is compared, so meals are those of the agents that were there."""
-    food = ("food.normal.capacity=200", "food.normal.initial_count=200", "food.normal.growth_rate=1")
-    settings = (*LIVELY, *ARENA, *food, "species.plain.body.radius=8", f'species.odd.reward.rule="{file}:copy"')
+    settings = (*LIVELY, *ARENA, *PLENTY, "species.plain.body.radius=8", f'species.odd.reward.rule="{file}:copy"')
     names = ", ".join(f'"{name}"' for name in of)
     settings += ("species.odd.reward.memory=5", f"species.odd.neighbor.near={{of=[{names}], range={reach}}}")
     simulation = make_simulation(*settings, seeds=(5,))
@@ -116,14 +117,16 @@ def test_bearings_are_counter_clockwise_from_the_heading(file):
 
 
 def test_threads_and_checkpoints_change_nothing(file):
-    settings = (*LIVELY, *ARENA, f'reward.rule="{file}:kind"', f'hazard.rule="{file}:crowd"', "neighbor.near.range=50")
+    """Also not that a world goes on in another simulation, whose slots nobody has lived in."""
+    settings = (*LIVELY, *ARENA, *PLENTY, f'reward.rule="{file}:kind"', f'hazard.rule="{file}:crowd"')
     settings += ("genome.extra.kindness.initial_sd=1", 'birth.mating="pairs"', "birth.mating_range=50")
+    settings += ("neighbor.near.range=50", "birth.distance_sd=20", "birth.attempts=100")
     once = make_simulation(*settings, seeds=(3,))
     once.run(150)
-    first, second = (make_simulation(*settings, seeds=(3,), threads=threads) for threads in (2, 1))
+    first, begun, second = (make_simulation(*settings, seeds=(3,), threads=threads) for threads in (2, 1, 1))
     first.run(150)
-    second.run(70)
-    second.engine.restore(0, second.engine.save(0))
+    begun.run(70)
+    second.engine.restore(0, begun.engine.save(0))
     second.run(80)
     assert once.worlds[0].counters["births"] > 10
     assert {first.worlds[0].digest(), second.worlds[0].digest()} == {once.worlds[0].digest()}
@@ -155,11 +158,32 @@ def test_a_neutral_marker_is_refused_with_what_to_use(file):
         make_simulation(f'reward.rule="{file}:marked"')
 
 
+def test_a_newborn_has_eaten_nothing_of_what_the_last_one_in_its_slot_ate(file):
+    """A parent's hazard is asked again when its child is there; in another simulation nobody has lived in the slot."""
+    settings = (*LIVELY, *ARENA, *PLENTY, f'hazard.rule="{file}:greed"', "neighbor.near.range=35")
+    settings += ("birth.distance_sd=20", "birth.attempts=1000", "birth.kappa=0.2")
+    once = make_simulation(*settings, seeds=(3,))
+    moved = make_simulation(*settings, seeds=(3,))
+    for _ in range(30):
+        once.run(4)
+        moved.run(2)
+        fresh = make_simulation(*settings, seeds=(3,))
+        fresh.engine.restore(0, moved.engine.save(0))
+        moved = fresh
+        moved.run(2)
+        assert moved.worlds[0].digest() == once.worlds[0].digest()
+    assert min(once.worlds[0].counters[name] for name in ("births", "deaths")) > 30
+
+
 @pytest.mark.parametrize(
     ("settings", "says"),
     [
         (["genome.extra.kindness={}"], r"genome\.extra: only a rule in Python reads this: give reward\.rule or hazard"),
         (["neighbor.near={}"], r"neighbor\.near: nothing reads its channels, such as near_count: sensor\.observes"),
+        (
+            ['neighbor.grain.of=["normal"]', "reward.pay.grain_meals={}"],
+            r"no channel 'grain_meals' here.*grain_bearing",
+        ),
         (["sensor.observes.near_prey=1"], r"no channel 'near_prey' here; \[neighbor\.NAME\] asks who is near"),
         (['reward.rule="a.py:b"', "genome.extra.Kind={}"], r"genome\.extra\.Kind: a name must have only a-z"),
         (['reward.rule="a.py:b"', 'neighbor."a b"={}'], r"neighbor\.a b: a name must have only a-z"),

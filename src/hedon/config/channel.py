@@ -8,11 +8,11 @@ the caller gets, are lists of channels. The engine gets them as data and reads a
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hedon.config.neighbor import NUMBERS
+from hedon.config.neighbor import KIN, NUMBERS
 from hedon.config.settings import Settings
 from hedon.config.species import SpeciesConfig
 from hedon.config.store import ENERGY
-from hedon.config.type import chosen, diet, smelled
+from hedon.config.type import asked_for, chosen, diet, smelled
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +47,8 @@ SEVERAL: dict[str, tuple[tuple[str, ...], str]] = {
     "noses": (("<type>_<nose>",), "of each type that it smells, and each nose from 0 on"),
     "touches": (("<type>",), "of each type that it collides with"),
     "season": (("sine", "cosine"), "where a schedule has a period, or with sensor.season_period"),
-    "answers": (tuple(f"<query>_{number}" for number in NUMBERS), "of each query"),
-    "queries": (("<query>",), "of each query"),
+    "answers": (tuple(f"<query>_{number}" for number in NUMBERS), "of each query; kin, where it finds agents"),
+    "queries": (("<query>",), "of each query that finds agents"),
     "harm": (("",), "where there are obstacles"),
     "mates": (("",), 'with birth.mating = "pairs"'),
     "drive": (("",), "with reward.drive_reduction_coef"),
@@ -139,6 +139,7 @@ def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
         species: one of the config's.
     """
     eaten, smells = diet(config, species), smelled(config, species.sensor.smells)
+    alive = {name for name, query in species.neighbor.items() if {*asked_for(config, query.of)} & config.species.keys()}
     names: dict[str, Sequence[str | None]] = {
         "stores": tuple(species.stores),
         "meals": [name if name in eaten else None for name in (*config.food, *config.species)],
@@ -147,8 +148,12 @@ def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
         "noses": [f"{name}_{nose}" for name in smells for nose in range(species.sensor.noses)],
         "touches": chosen(config, species.body.collides),
         "season": ("sine", "cosine") if season_place(config, species) else (),
-        "answers": [f"{name}_{number}" for name in species.neighbor for number in NUMBERS],
-        "queries": tuple(species.neighbor),
+        "answers": [
+            f"{name}_{number}" if number != KIN or name in alive else None
+            for name in species.neighbor
+            for number in NUMBERS
+        ],
+        "queries": [name if name in alive else None for name in species.neighbor],
         "harm": ("",) * (config.obstacle.count > 0),
         "mates": ("",) * (species.birth.mating == "pairs"),
         "drive": ("",) * (species.reward.drive_reduction_coef != 0),

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from hedon.config.field import OURS, setting
 
-NUMBERS = ("count", "kin", "distance", "bearing")
+KIN = "kin"
+NUMBERS = ("count", KIN, "distance", "bearing")
 """The numbers of a query as a step begins, in order; `CLOSE_count` is one of the query `CLOSE`."""
 MEALS = "meals"
 """The number of a query that is known when a step is done."""
@@ -18,7 +19,7 @@ class NeighborConfig:
     itself; NAME_kin, those of them that are its parents or children or share a parent with it; NAME_distance [u] of the
     nearest, the range where there is none; NAME_bearing [rad] of the nearest, from −π to π: 0 ahead, positive to the
     left, 0 where there is none. When the step is done: NAME_meals, what the agents that are within the range then ate
-    in it.
+    in it. A query of foods alone has neither kin nor meals.
     """
 
     of: tuple[str, ...] = setting(
