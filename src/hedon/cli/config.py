@@ -132,18 +132,18 @@ def migrate(
 ) -> None:
     """Rewrite a config file of an earlier version with the names of this one.
 
-    Comments stay where their lines do, and those that go are shown; a complete file is written anew. Folders of runs
-    need it not: they are read as they are.
+    Comments stay where their lines do, and those that go are shown; a complete file is written anew. A file in which
+    anything is wrong is left as it is. Folders of runs do not need it: they are read as they are.
 
     \b
     Examples:
       hedon config migrate my.toml
       hedon config migrate my.toml --stdout
     """
-    from hedon.config.load import load_config, migrated_file
+    from hedon.config.load import migrated_file
     from hedon.config.toml import read_toml
 
-    text = migrated_file(file)
+    text, config = migrated_file(file)
     if not read_toml(file).get("complete"):
         for comment in re.findall(r"#.*", file.read_text(encoding="utf-8-sig")):
             if comment not in text:
@@ -152,7 +152,6 @@ def migrate(
         typer.echo(text, nl=False)
         return
     file.write_text(text, encoding="utf-8", newline="")  # the ends of lines that it had
-    config = load_config(file)
     typer.echo(f"wrote {file} (preset {config.preset}, fidelity {config.fidelity})")
 
 

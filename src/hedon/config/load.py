@@ -2,7 +2,7 @@
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
@@ -20,7 +20,7 @@ from hedon.config.layer import (
     stack,
     with_defaults,
 )
-from hedon.config.migrate import is_earlier, migrate_text, migrated, renamed
+from hedon.config.migrate import clashes, is_earlier, migrate_text, migrated, renamed
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest
 from hedon.config.rule_path import with_absolute_rules
@@ -54,6 +54,7 @@ SEQUEL_PRESETS = (
 OUR_PRESETS = ("seasons", "appetite")
 """Conditions that are ours."""
 PRESETS = (*PAPER_PRESETS, *SEQUEL_PRESETS, *OUR_PRESETS)
+_MIGRATE = " (`hedon config migrate FILE` rewrites a file)"
 MISTYPED = 0.75
 """How alike two names of species are at least, if one is a typing error for the other: a letter of four."""
 FIDELITIES = ("corrected", "released", "text")
@@ -79,20 +80,26 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     """
     texts = _texts(overrides)
     path = _path_of(source)
-    origin = str(path or source)
-    own = {"preset": source} if path is None else with_absolute_rules(_current(read_toml(path), origin), path.parent)
+    own = {"preset": source} if path is None else read_toml(path)
+    return _config_of(own, path, fidelity, texts)
+
+
+def _config_of(tables: Table, path: Path | None, fidelity: str | None = None, texts: Sequence[str] = ()) -> Config:
+    """The config of a file's tables; without a path they name a preset alone."""
+    origin = str(path or tables["preset"])
+    own = tables if path is None else with_absolute_rules(_current(tables, origin), path.parent)
     over = [parse_override(text) for text in texts]
     problems = [item for item in over if isinstance(item, Problem)]
-    tables = [with_absolute_rules(item, Path()) for item in over if not isinstance(item, Problem)]
-    require_plain(tables, f"{origin}, with changes")
-    for name in [each for table in tables for each in table if each in ("preset", "fidelity", "complete")]:
+    changes = [with_absolute_rules(item, Path()) for item in over if not isinstance(item, Problem)]
+    require_plain(changes, f"{origin}, with changes")
+    for name in [each for table in changes for each in table if each in ("preset", "fidelity", "complete")]:
         other = "--fidelity" if name == "fidelity" else "the preset or file itself"
         problems.append(Problem(name, f"is not a setting: give it with {other}"))
     below = _layers_below(own, fidelity, problems)
     if problems:
         raise ConfigError(origin, problems)
-    name = {"name": str(source) if path is None else _name_of(path)}
-    return _from_layers([name, *below], [own, *tables], f"{origin}, with changes" if tables else origin)
+    name = {"name": origin if path is None else _name_of(path)}
+    return _from_layers([name, *below], [own, *changes], f"{origin}, with changes" if changes else origin)
 
 
 def parse_config(text: str, origin: str) -> Config:
@@ -119,18 +126,23 @@ def _current(tables: Table, origin: str) -> Table:
     return {"complete": True, "schema": SCHEMA} | asdict(build(Config, old, origin))
 
 
-def migrated_file(path: Path) -> str:
-    """The text of a config file with the names of this version; a complete one is written anew.
+def migrated_file(path: Path) -> tuple[str, Config]:
+    """The text of a config file with the names of this version, and its config; a complete one is written anew.
 
     Raises:
-        ConfigError: It is no config file, or a complete one with something wrong in it.
+        ConfigError: It is no config file, something in it is wrong, or two settings of it are one now and differ.
     """
-    tables = read_toml(path)
+    tables, origin = read_toml(path), str(path)
     if is_earlier(tables):
-        return dump_toml(load_config(path))
+        config = _config_of(tables, path)
+        return dump_toml(config), config
+    problems = list(clashes(tables))
+    if problems:
+        raise ConfigError(origin, problems)
     preset = tables.get("preset", DEFAULT_PRESET)
     below = stack(_preset_layers(preset)) if preset in PRESETS else {}
-    return migrate_text(path.read_text(encoding="utf-8-sig"), below)
+    text = migrate_text(path.read_text(encoding="utf-8-sig"), below)
+    return text, _config_of(parse_toml(text.replace("\r\n", "\n"), origin), path)
 
 
 def is_modified(config: Config) -> bool:
@@ -234,7 +246,7 @@ def _mistyped_species(below: Table, overrides: list[Table]) -> list[Problem]:
 
 def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     """The config of layers of tables, the lowest first; `above` are those of the user: a file, then overrides."""
-    problems = [problem for layer in above for problem in renamed(layer)]
+    problems = [*renamed(above[0], _MIGRATE), *(problem for layer in above[1:] for problem in renamed(layer))]
     if problems:
         raise ConfigError(origin, problems)
     complete = above[0].get("complete") is True

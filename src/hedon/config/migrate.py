@@ -6,9 +6,10 @@ from contextlib import suppress
 from copy import deepcopy
 from typing import Any
 
+from hedon.config.field import value_at
 from hedon.config.layer import Table, has
-from hedon.config.problem import Problem
-from hedon.config.species import EVERYTHING, PER_SPECIES
+from hedon.config.problem import Problem, format_value
+from hedon.config.species import EVERYTHING, ONLY, PER_SPECIES
 
 MOVED = {
     "body.food_radius": "world.food_radius",
@@ -66,35 +67,53 @@ SENSE_COEF = 0.1
 """The factor of their terms where a file did not say it."""
 _MEANT = {"learning": {"acting_weights": "float32"}}
 """What complete files of the first versions mean by settings that they lack, where the default is another value."""
-_HINT = "`hedon config migrate FILE` rewrites a file"
 _LAWS = ("initial_mean_food", "initial_mean_action", "initial_sd")
 """Settings of `genome` that stood for the law of every gene before 0.4."""
 
 
-def renamed(tables: Table) -> Iterator[Problem]:
-    """Yields each setting that has another path now, and each choice that has another name."""
+def clashes(tables: Table) -> Iterator[Problem]:
+    """Yields each setting whose place now has another value: its own, or that of another species."""
+    owners = {"": tables} | {f"species.{name}.": own for name, own in _tables(tables.get("species")).items()}
+    told: dict[str, Any] = {}
+    for old, new in MOVED.items():
+        for place, own in owners.items():
+            if has(own, old.split(".")):
+                now = new if new.startswith("world.") else place + new
+                value = value_at(own, old)
+                there = value_at(tables, now) if has(tables, now.split(".")) else told.setdefault(now, value)
+                if there != value:
+                    yield Problem(
+                        place + old, f"is called {now} now, which is {format_value(there)}", format_value(value)
+                    )
+
+
+def renamed(tables: Table, hint: str = "") -> Iterator[Problem]:
+    """Yields each setting that has another path now, and each choice that has another name.
+
+    Args:
+        tables: of a layer.
+        hint: what helps, in brackets, at the end of each message.
+    """
     species = tables.get("species")
     owners = {"": tables} | {f"species.{name}.": own for name, own in _tables(species).items()}
     for place, own in owners.items():
         for old, new in MOVED.items():
             if has(own, old.split(".")):
                 now = new if new.startswith("world.") else place + new
-                yield Problem(place + old, f"is called {now} now ({_HINT})")
+                yield Problem(place + old, f"is called {now} now{hint}")
         for path, names in VALUES.items():
             section, name = path.split(".")
             value = own[section][name] if has(own, [section, name]) else None
             if isinstance(value, str) and value in names:
                 more = f', with reward.gate = "{GATES[value]}"' if value in GATES else ""
-                yield Problem(place + path, f'is called "{names[value]}" now{more} ({_HINT})', f'"{value}"')
+                yield Problem(place + path, f'is called "{names[value]}" now{more}{hint}', f'"{value}"')
         for sense in SENSES:
             for name in _tables(_tables(own.get("reward")).get(sense)):
-                yield Problem(
-                    f"{place}reward.{sense}.{name}", f"is called {place}reward.pay.{sense}_{name} now ({_HINT})"
-                )
+                yield Problem(f"{place}reward.{sense}.{name}", f"is called {place}reward.pay.{sense}_{name} now{hint}")
     for kind, food in _tables(tables.get("food")).items():
         for name in GIVEN:
             if name in food:
-                yield Problem(f"food.{kind}.{name}", f"is called food.{kind}.gives.{name} now ({_HINT})")
+                yield Problem(f"food.{kind}.{name}", f"is called food.{kind}.gives.{name} now{hint}")
 
 
 def new_path(path: str) -> str | None:
@@ -159,7 +178,7 @@ def migrate_text(text: str, below: Table) -> str:
     inline = tomlkit.inline_table
     for table, row in ((tomlkit.table, tomlkit.table), (tomlkit.table, inline), (inline, inline)):
         document: Any = tomlkit.parse(text)
-        with suppress(TOMLKitError, LookupError, tomllib.TOMLDecodeError):  # tables that stand at several places
+        with suppress(TOMLKitError, LookupError, ValueError):  # tables that stand at several places
             _rewrite(document, below, table, row, in_line=table is inline)
             if _told(tomllib.loads(tomlkit.dumps(document))) == _told(meant):
                 return tomlkit.dumps(document)
@@ -175,10 +194,10 @@ def _rewrite(
     _name_stores(root, below, False, table)
 
 
-def _told(table: Table) -> Table:
-    """A table without the empty ones in it."""
-    within = {name: _told(value) if isinstance(value, dict) else value for name, value in table.items()}
-    return {name: value for name, value in within.items() if value != {}}
+def _told(table: Table, kept: bool = False) -> Table:
+    """A table without the empty ones in it, which say nothing, unless they name a species beside the usual one."""
+    within = {n: _told(value, n == "species") if isinstance(value, dict) else value for n, value in table.items()}
+    return {name: value for name, value in within.items() if value != {} or (kept and name != ONLY)}
 
 
 def _tables(value: Any) -> dict[str, Any]:
@@ -198,9 +217,9 @@ def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict, r
             if not has(owner, [section, name]):
                 continue
             value = owner[section].pop(name)
-            if not owner[section]:
-                owner.pop(section)
             home = root if target == "world" else owner
+            if not owner[section] and (home is owner or len(owner) > 1):  # else its table is what names a species
+                owner.pop(section)
             for place in (target, *between):
                 home = home.setdefault(place, table())
             home[now] = value

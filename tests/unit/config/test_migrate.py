@@ -17,7 +17,7 @@ from hedon.check.run import check_run
 from hedon.config import ConfigError, diff, digest, dump_toml, load_config
 from hedon.config.dump import flatten
 from hedon.config.evolution import GeneConfig, PayConfig
-from hedon.config.field import sections, settings
+from hedon.config.field import sections, settings, value_at
 from hedon.config.load import migrated_file, parse_config
 from hedon.config.migrate import MOVED, STORES, VALUES, migrate_text, renamed
 from hedon.config.species import SpeciesConfig
@@ -36,7 +36,7 @@ Write = Callable[[str], Path]
 
 def test_the_config_of_an_earlier_run_means_what_its_file_means(tmp_path: Path) -> None:
     file = tmp_path / "two.toml"
-    file.write_text(migrated_file(EARLIER / "two.toml"))
+    file.write_text(migrated_file(EARLIER / "two.toml")[0])
     made, read = load_config(file), load_config(EARLIER / "two" / "config.toml")
     assert (diff(made, read), digest(made)) == ([], digest(read))
     assert (read.world.food_radius, read.world.eaten_food, read.world.rollout_steps) == (5.0, "seen", 128)
@@ -49,7 +49,7 @@ def test_the_config_of_an_earlier_run_means_what_its_file_means(tmp_path: Path) 
 
 def test_a_file_keeps_its_comments_and_its_order(tmp_path: Path) -> None:
     before = (EARLIER / "two.toml").read_text().replace("birth.delay", "birth.logit_offset")
-    after = migrated_file(EARLIER / "two.toml")
+    after = migrated_file(EARLIER / "two.toml")[0]
     moved = ["food_radius = 5.0", 'eaten_food = "seen"', "rollout_steps = 128"]
     assert "\n".join(["[world]", *moved, ""]) in after
     stores = ["[nutrient]", "initial = 30.0", "hazard_share = 0.3", "[toxin]", "threshold = 4.0"]
@@ -60,7 +60,7 @@ def test_a_file_keeps_its_comments_and_its_order(tmp_path: Path) -> None:
     assert "nutrient = 1.0 # a second store" in after
     file = tmp_path / "again.toml"
     file.write_text(after)
-    assert migrated_file(file) == after
+    assert migrated_file(file)[0] == after
 
 
 LINES = (
@@ -112,6 +112,53 @@ def test_the_command_rewrites_short_and_complete_files(tmp_path: Path) -> None:
     assert short.read_text().splitlines() == shown.stdout.splitlines()
     assert (load_config(short).world.food_radius, load_config(short).world.parents) == (5.0, "resident_slots")
     assert whole.read_text() == dump_toml(load_config(EARLIER / "one" / "config.toml"))
+
+
+@pytest.mark.parametrize(
+    ("text", "path", "value"),
+    [
+        ("[food]\nbad = {energy = 0.5, toxin = 2.0}", "food.bad.gives.toxin", 2.0),
+        ("food.bad = {energy = 0.5}", "food.bad.gives.energy", 0.5),
+        ("reward = {see = {agent = {coef = 0.5}}}", "species.agent.reward.pay.see_agent.coef", 0.5),
+        ("species.a = {birth = {delay = 2.0}}\nspecies.b = {}", "species.a.birth.logit_offset", 2.0),
+        (
+            '[species.a.birth]\norder = "after_deaths" # why\n[species.b.birth]\norder = "after_deaths"',
+            "species.b",
+            None,
+        ),
+    ],
+)
+def test_tables_of_one_line_and_empty_ones_are_rewritten(write: Write, text: str, path: str, value: Any) -> None:
+    file = write(text)
+    migrated, config = migrated_file(file)
+    file.write_text(migrated)
+    assert load_config(file) == config
+    found = value_at(config, path)
+    assert value is None or found == value
+    assert ("# why" in migrated) == ("# why" in text)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (
+            "[birth]\ndelay = 1.0\nlogit_offset = 2.0",
+            r"birth\.delay = 1\.0: is called birth\.logit_offset now, which is 2",
+        ),
+        (
+            '[birth]\norder = "after_deaths"\n[species.a.birth]\norder = "before_deaths"\n[species.b]',
+            r'species\.a\.birth\.order = "before_deaths": is called world\.birth_order now, which is "after_deaths"',
+        ),
+        ("hello = 3", "hello: unknown name"),
+        ('[factor]\n"birth.delay" = [1.0]', "factor: unknown name"),
+    ],
+)
+def test_a_file_that_cannot_be_rewritten_stays_as_it_is(write: Write, text: str, says: str) -> None:
+    file = write(text)
+    done = hedon("config", "migrate", str(file))
+    assert done.returncode == 2
+    assert re.search(says, done.stderr)
+    assert file.read_text() == text
 
 
 def test_lines_keep_their_ends(tmp_path: Path) -> None:
@@ -169,7 +216,7 @@ def test_a_choice_with_another_name_is_refused_with_it(path: str) -> None:
 @pytest.mark.parametrize("given", ['reward.family = "by_age"', '[species.agent.reward]\nfamily = "by_age"'])
 def test_weights_by_age_get_age_as_their_gate(write: Write, given: str) -> None:
     file = write(f"{given}  # the old like action\n")
-    file.write_text(migrated_file(file))
+    file.write_text(migrated_file(file)[0])
     assert "# the old like action" in file.read_text()
     reward = load_config(file).species["agent"].reward
     assert (reward.family, reward.gate) == ("between", "age")
@@ -196,7 +243,7 @@ def test_rewards_for_sights_and_smells_are_terms_like_others(
     file = write(f"{text}  # said\n")
     with pytest.raises(ConfigError, match=f"is called .*reward.pay.{term} now"):
         load_config(file)
-    file.write_text(migrated_file(file))
+    file.write_text(migrated_file(file)[0])
     assert "# said" in file.read_text()
     found = next(iter(load_config(file).species.values())).reward.pay[term]
     assert (found.channel, found.coef) == (pay.channel, pay.coef)
