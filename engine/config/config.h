@@ -68,9 +68,6 @@ struct Channel {
   static constexpr Limit LIMITS[] = {Limit(), Limit::from(0, 2 * MAX_TYPES - 1), Limit::over(0, 1e6)};
 };
 
-/// Numbers that answer a query as a step begins.
-inline constexpr int QUERY_NUMBERS = 4;
-
 /// What near an agent a query finds.
 struct NeighborQuery {
   int32_t types;  ///< bit t: those of type t count, species and kinds of food
@@ -80,10 +77,16 @@ struct NeighborQuery {
   static constexpr Limit LIMITS[] = {Limit::from(0, (1 << MAX_TYPES) - 1), Limit::over(0, 1e4)};
 };
 
+/// Whether a source is what a query finds as a step begins.
+constexpr bool is_answer(ChannelSource source) {
+  return source == ChannelSource::neighbor_count || source == ChannelSource::neighbor_kin ||
+         source == ChannelSource::neighbor_distance || source == ChannelSource::neighbor_bearing;
+}
+
 /// Whether a source needs what the agent observes.
 constexpr bool is_sensed(ChannelSource source) {
   return source == ChannelSource::see_mean || source == ChannelSource::see_max || source == ChannelSource::nearness ||
-         source == ChannelSource::smell || source == ChannelSource::smell_mean || source == ChannelSource::neighbor;
+         source == ChannelSource::smell || source == ChannelSource::smell_mean || is_answer(source);
 }
 
 /// One term of the reward: coef · weight · channel.

@@ -348,15 +348,17 @@ HEDON_ENUM(GenomeLearning, learning_rate, gamma, entropy_coef, action_sd)
 HEDON_ENUM(GenomeFamily, threshold, threshold_width)
 HEDON_ENUM(RuleUse, reward, hazard, birth)
 HEDON_ENUM(ChannelSource, velocity, angle, heading, angular_velocity, store, store_before, store_change, meals, damage,
-      see_mean, see_max, nearness, smell, smell_mean, contacts, touched, effort, force, force_norm, moved, position,
-      age, births, waits, drive_reduction, season, step, alive, neighbor, neighbor_meals, one, last)
-HEDON_ENUM(ChannelOf, one, two, stores, meals, sees, smells, noses, touches, season, answers, queries, harm, mates,
+      see_mean, see_max, nearness, smell, smell_mean, contacts, touched, neighbor_count, neighbor_kin,
+      neighbor_distance, neighbor_bearing, neighbor_meals, effort, force, force_norm, moved, position, age, births,
+      waits, drive_reduction, season, step, alive, one, last)
+HEDON_ENUM(ChannelOf, one, two, stores, meals, sees, smells, noses, touches, season, queries, companies, harm, mates,
       drive, last)
 inline constexpr ChannelOf CHANNEL_OF[] = {ChannelOf::two, ChannelOf::one, ChannelOf::two, ChannelOf::one,
       ChannelOf::stores, ChannelOf::stores, ChannelOf::stores, ChannelOf::meals, ChannelOf::harm, ChannelOf::sees,
       ChannelOf::sees, ChannelOf::one, ChannelOf::noses, ChannelOf::smells, ChannelOf::touches, ChannelOf::one,
+      ChannelOf::queries, ChannelOf::companies, ChannelOf::queries, ChannelOf::queries, ChannelOf::companies,
       ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one, ChannelOf::two, ChannelOf::one, ChannelOf::one,
-      ChannelOf::mates, ChannelOf::drive, ChannelOf::season, ChannelOf::one, ChannelOf::one, ChannelOf::answers,
-      ChannelOf::queries, ChannelOf::one, ChannelOf::last};
+      ChannelOf::mates, ChannelOf::drive, ChannelOf::season, ChannelOf::one, ChannelOf::one, ChannelOf::one,
+      ChannelOf::last};
 
 }  // namespace hedon

@@ -148,9 +148,8 @@ int32_t numbers_of(ChannelSource source, const Config& config, int32_t s) {
       return species.birth.mating == BirthMating::pairs ? 1 : 0;
     case ChannelOf::drive:
       return layout.set_points.count > 0 ? 1 : 0;
-    case ChannelOf::answers:
-      return layout.neighbors.count * QUERY_NUMBERS;
     case ChannelOf::queries:
+    case ChannelOf::companies:
       return layout.neighbors.count;
     case ChannelOf::last:
       return layout.last.count;

@@ -61,6 +61,7 @@ std::unique_ptr<char, decltype(&free)> kept(nullptr, &free);  ///< a copy of the
 bool kept_edited;
 View view;
 AgentProbe probe;
+const void* const PROBED[] = {probe.observation.ray, probe.observation.ray_type, probe.output, probe.observed};
 
 int fail(const std::string& what) {
   message = what;
@@ -317,8 +318,9 @@ HEDON_EXPORT(hedon_take_deaths) void hedon_take_deaths() {
 }
 
 /// What the agent in `slot` senses now and how its network answers, zeros if its species has none; changes nothing of
-/// the world's state.
-HEDON_EXPORT(hedon_probe) const AgentProbe* hedon_probe(int32_t slot) {
+/// the world's state. Returns where its parts are: readings and types of rays, the network's answer, what else it
+/// observes.
+HEDON_EXPORT(hedon_probe) const void* const* hedon_probe(int32_t slot) {
   note_start(world(), slot);
   observe(world(), slot, 0, probe.observation);
   memset(probe.output, 0, sizeof probe.output);
@@ -328,7 +330,7 @@ HEDON_EXPORT(hedon_probe) const AgentProbe* hedon_probe(int32_t slot) {
   if (world().species(slot).has_network)
     world().kernel->network.forward(world().species(slot).network, world().network(slot), probe.observation,
                                     probe.output);
-  return &probe;
+  return PROBED;
 }
 
 }  // namespace hedon

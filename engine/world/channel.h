@@ -159,8 +159,14 @@ HEDON_FN double channel_value(const World& world, int32_t slot, const PackedObse
       return static_cast<double>(world.head().step);
     case ChannelSource::alive:
       return static_cast<double>(species.capacity() - state.free_count[world.shape->species_of(slot)]);
-    case ChannelSource::neighbor:
-      return scratch.near[int64_t{slot} * world.shape->near + i];
+    case ChannelSource::neighbor_count:
+      return answer(world, slot, i).count;
+    case ChannelSource::neighbor_kin:
+      return answer(world, slot, i).kin;
+    case ChannelSource::neighbor_distance:
+      return answer(world, slot, i).distance;
+    case ChannelSource::neighbor_bearing:
+      return answer(world, slot, i).bearing;
     case ChannelSource::neighbor_meals:
       return count_meals_near(world, slot, species.layout.neighbors[i]);
     case ChannelSource::one:

@@ -56,7 +56,7 @@ enum class Extent : uint8_t {
   scents,            ///< what an agent smells: channels times noses
   memory,            ///< numbers that a rule keeps for each agent
   record,            ///< numbers that a rule gets for one agent
-  near,              ///< numbers that answer the queries about one agent
+  near,              ///< most queries of a species
   steps,             ///< of a rollout
   step_actions,      ///< actions of a rollout
   observations,      ///< cache lines of the observations of a rollout, and of the one after it

@@ -28,8 +28,7 @@ HEDON_FN bool asks_for(const NeighborQuery& query, int32_t type) { return (query
 
 /// Answers one query about the agent in `slot` as a step begins, by the scene: foods just eaten count if they are seen.
 /// Of equally near agents the oldest is the nearest, then the first food.
-HEDON_FN void ask_neighbors(const World& world, int32_t slot, const NeighborQuery& query, Vec2 forward,
-                            double* answer) {
+HEDON_FN Answer ask_neighbors(const World& world, int32_t slot, const NeighborQuery& query, Vec2 forward) {
   const RayScene& scene = world.scene;
   const int32_t own = scene.own[slot];
   const Vec2 center{scene.x[own], scene.y[own]};
@@ -48,18 +47,20 @@ HEDON_FN void ask_neighbors(const World& world, int32_t slot, const NeighborQuer
     least = squared;
     oldest = id;
   });
-  answer[0] = count;
-  answer[1] = kin;
-  answer[2] = count > 0 ? sqrt(static_cast<double>(least)) : static_cast<double>(query.range);
-  answer[3] = count > 0 ? atan2_double(cross(forward, nearest), dot(forward, nearest)) : 0.0;
+  if (count == 0) return {0, 0, static_cast<double>(query.range), 0.0};
+  return {count, kin, sqrt(static_cast<double>(least)), atan2_double(cross(forward, nearest), dot(forward, nearest))};
 }
 
 /// Answers all queries about the agent in `slot`, for its channels. `forward` is its heading, a unit vector.
 HEDON_FN void look_around(const World& world, int32_t slot, Vec2 forward) {
   const FixedList<NeighborQuery, MAX_QUERIES>& queries = world.species(slot).layout.neighbors;
-  double* answers = &world.scratch.near[int64_t{slot} * world.shape->near];
   for (int32_t q = 0; q < queries.count; ++q)
-    ask_neighbors(world, slot, queries[q], forward, answers + q * QUERY_NUMBERS);
+    world.scratch.near[int64_t{slot} * world.shape->near + q] = ask_neighbors(world, slot, queries[q], forward);
+}
+
+/// What query `q` found about the agent in `slot`.
+HEDON_FN const Answer& answer(const World& world, int32_t slot, int32_t q) {
+  return world.scratch.near[int64_t{slot} * world.shape->near + q];
 }
 
 /// What the living agents of a query that are near when a step is done ate in it, in meals.

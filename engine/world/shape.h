@@ -59,7 +59,7 @@ struct WorldShape {
   bool ruled;              ///< rules of the caller pay some species, or decide when it dies or breeds
   int32_t memory;          ///< most numbers that a rule keeps for each agent
   int32_t record;          ///< of the longest record that a rule gets
-  int32_t near;            ///< most numbers that answer the queries about one agent
+  int32_t near;            ///< most queries of a species
   int32_t last;            ///< most numbers of a step that are kept for the next observation
   bool counts_births;      ///< some species senses, or is paid for, the children that it had
   int32_t scents;          ///< of the longest row of smells: channels times noses
@@ -151,7 +151,7 @@ HEDON_FN WorldShape make_shape(const Config& config, int32_t walls, int32_t oute
     for (int32_t i = 0; i < layout.needs.count; ++i) shape.gated |= layout.needs[i] > 0.0f;
     grow(shape.scents, layout.smells.count * own.sensor.noses);
     grow(shape.last, layout.last.count);
-    grow(shape.near, layout.neighbors.count * QUERY_NUMBERS);
+    grow(shape.near, layout.neighbors.count);
     layout.for_each_channel([&](const Channel& each) { shape.counts_births |= each.source == ChannelSource::births; });
     grow(shape.genes, layout.genes.count);
     grow(shape.params, species.network.size());

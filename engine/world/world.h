@@ -37,6 +37,13 @@ struct Finding {
   double value;
 };
 
+/// What a query found as the step began.
+struct Answer {
+  int32_t count, kin;
+  double distance;  ///< of the nearest [u]
+  double bearing;   ///< of the nearest [rad]
+};
+
 /// Scratch memory of one step, by slot. Not valid between steps.
 struct StepScratch {
   Array<int32_t> by_slot;                     ///< slots of the living, ascending: see `list_by_slot`
@@ -62,7 +69,7 @@ struct StepScratch {
   Array<double> claim_gain;      ///< energy, where all claims are settled at once
   Array<double> record, answer;  ///< of the agents that a rule is asked about, one after another
   Array<int32_t> asked;          ///< their slots
-  Array<double> near;            ///< by slot: what its queries found as the step began
+  Array<Answer> near;            ///< by slot: what its queries found as the step began
   Array<int32_t> parent;
   Array<uint32_t> parent_key;
 

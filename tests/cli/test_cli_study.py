@@ -131,7 +131,10 @@ def test_the_word_of_before_names_the_new_one(tmp_path: Path) -> None:
     [
         (("run", "weigths-poor"), "there is no study or item 'weigths-poor'; did you mean weights-poor?"),
         (("plan", "faer"), "there is no study or item 'faer'; did you mean fear?"),
-        (("run", "hazard", "--fidelity", "relesed"), "--fidelity: 'relesed' is not one of corrected, released, text"),
+        (
+            ("run", "hazard", "--fidelity", "relesed"),
+            "--fidelity: 'relesed' is not one of corrected, released, as_printed",
+        ),
         (("run", "hazard", "--out", "/proc/none"), "cannot write /proc/none"),
         (("report", "hazard", "--out", "/proc/none"), "cannot write /proc/none"),
         (("run", "weights-poor", "--seeds", "5-1"), "seeds: '5-1' is not a range of seeds"),

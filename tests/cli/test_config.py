@@ -21,10 +21,10 @@ def test_presets_are_listed() -> None:
 
 
 def test_shown_config_is_a_file_that_loads(tmp_path: Path) -> None:
-    found = hedon("config", "show", "poor", "--fidelity", "text", "--set", "sensor.scaling=unit")
+    found = hedon("config", "show", "poor", "--fidelity", "as_printed", "--set", "sensor.scaling=unit")
     path = tmp_path / "poor.toml"
     path.write_text(found.stdout, encoding="utf-8")
-    assert load_config(path) == load_config("poor", "text", ["sensor.scaling=unit"])
+    assert load_config(path) == load_config("poor", "as_printed", ["sensor.scaling=unit"])
 
 
 def test_one_section_is_shown() -> None:
@@ -66,7 +66,7 @@ def test_check_names_all_problems(tmp_path: Path) -> None:
         (("presett",), "Did you mean 'presets'"),
         (("config", "shw"), "Did you mean 'show'?"),
         (("config", "show", "basline"), "did you mean baseline?"),
-        (("config", "show", "small", "--fidelity", "txt"), "did you mean text?"),
+        (("config", "show", "small", "--fidelity", "text"), "did you mean as_printed?"),
         (("config", "show", "small", "--set", "energy.initial"), 'must be "section.name=value"'),
     ],
 )

@@ -167,7 +167,15 @@ def test_a_rule_gets_a_paid_channel_once_where_it_knows_it_already() -> None:
 
 @pytest.mark.parametrize(
     ("source", "index"),
-    [("meals", 1), ("damage", 0), ("waits", 0), ("neighbor", 0), ("neighbor_meals", 0), ("last", 0), ("contacts", 3)],
+    [
+        ("meals", 1),
+        ("damage", 0),
+        ("waits", 0),
+        ("neighbor_count", 0),
+        ("neighbor_meals", 0),
+        ("last", 0),
+        ("contacts", 3),
+    ],
 )
 def test_the_engine_refuses_a_number_that_a_source_does_not_have(source: str, index: int) -> None:
     native = engine_input(load_config("baseline", overrides=["reward.pay.moved={}"]))

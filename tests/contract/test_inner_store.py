@@ -203,6 +203,7 @@ def test_a_species_without_a_store_holds_none_of_it(tmp_path):
         (["food.normal.gives.watr=1", "store.water.capacity=3"], r"food\.normal\.gives\.watr: .*did you mean water"),
         (["food.normal.needs.water=-1", "store.water.capacity=3"], r"food\.normal\.needs.water = -1.*from 0"),
         (["store.water={capacity=3, initial=4}"], r"store\.water\.initial = 4\.0: must be at most its capacity = 3"),
+        (["store.alive.capacity=3"], r"store\.alive: .*not be one of energy"),
         (["store.age.capacity=3"], r"store\.age: .*not be one of energy, age"),
         ([f"store.s{i}.capacity=3" for i in range(8)], "at most 8 stores with energy, not 9"),
         ([f"store.s{i}.capacity=3" for i in range(7)] + ["sensor.smells=['*']", "sensor.noses=2"], None),

@@ -175,6 +175,12 @@ def test_a_newborn_has_eaten_nothing_of_what_the_last_one_in_its_slot_ate(file):
     assert min(once.worlds[0].counters[name] for name in ("births", "deaths")) > 30
 
 
+def test_a_query_of_all_species_is_taken_from_one_of_them():
+    settings = ("neighbor.close={}", "species.a.reward.pay.close_kin={}", "species.b.neighbor.close=false")
+    config = load_config("baseline", overrides=settings)
+    assert [list(species.neighbor) for species in config.species.values()] == [["close"], []]
+
+
 @pytest.mark.parametrize(
     ("settings", "says"),
     [
@@ -183,6 +189,11 @@ def test_a_newborn_has_eaten_nothing_of_what_the_last_one_in_its_slot_ate(file):
         (
             ['neighbor.grain.of=["normal"]', "reward.pay.grain_meals={}"],
             r"no channel 'grain_meals' here.*grain_bearing",
+        ),
+        (["neighbor.near={}", "reward.gate=near_count"], r"neighbor\.near: nothing reads its channels"),
+        (
+            ["neighbor.near.of=[]", "reward.pay.near_count={}"],
+            r"neighbor\.near\.of = \[\]: must name a species or a kind",
         ),
         (["sensor.observes.near_prey=1"], r"no channel 'near_prey' here; \[neighbor\.NAME\] asks who is near"),
         (['reward.rule="a.py:b"', "genome.extra.Kind={}"], r"genome\.extra\.Kind: a name must have only a-z"),

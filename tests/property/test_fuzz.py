@@ -90,7 +90,7 @@ line = st.one_of(
     st.builds("[{}]".format, st.one_of(st.sampled_from(SECTIONS), text)),
     st.builds("[[{}]]".format, st.sampled_from(SECTIONS)),
     st.builds('preset = "{}"'.format, st.sampled_from([*PRESETS, "none"])),
-    st.builds('fidelity = "{}"'.format, st.sampled_from(["released", "text", "none"])),
+    st.builds('fidelity = "{}"'.format, st.sampled_from(["released", "as_printed", "none"])),
     st.sampled_from(["complete = true", "complete = 1", "food = 3", "arena = []", "food.normal = {}", "food.x = {}"]),
 )
 
@@ -126,7 +126,9 @@ def test_any_text_is_a_config_or_an_error_that_names_the_place(tmp_path):
     path, found = tmp_path / "fuzz.toml", Counter()
 
     @settings(max_examples=EXAMPLES or 300, **FUZZ)
-    @given(content=document, overrides=st.lists(override, max_size=2), fidelity=st.sampled_from([None, "text", "x"]))
+    @given(
+        content=document, overrides=st.lists(override, max_size=2), fidelity=st.sampled_from([None, "as_printed", "x"])
+    )
     def trial(content: str, overrides: list[str], fidelity: str | None) -> None:
         path.write_text(content, encoding="utf-8", errors="surrogatepass")
         said, config = outcome(lambda: load_config(path, fidelity, overrides), ConfigError)

@@ -49,10 +49,10 @@ FIRST_PAPER = {
         steps=104,
     ),
     "text": Case(
-        "the fidelity text; mouths on all sides",
+        "the fidelity as_printed; mouths on all sides",
         ("genome.neutral_count=3", "sensor.mouth_spread=180", "birth.distance_sd=0.2"),
         {"eaten": 20},
-        fidelity="text",
+        fidelity="as_printed",
     ),
     "inner walls": Case(
         "inner walls; observations scaled to about 1",

@@ -47,7 +47,7 @@ FACTORS = {
     "a new food": ("", '"food.berry.capacity" = [30, 50]\n"food.berry.gives.energy" = [1, 2]'),
     "what was not there": ("", '"genome.mutation.w_action.scale" = [0.1, 0.2]\n"energy.initial" = [9, 10]'),
     "a choice and a list": ("", '"birth.mating" = ["none", "pairs"]\n"arena.inner_walls" = [[[10, 10, 60, 60]], []]'),
-    "presets": ("", 'preset = ["small", "poison"]\nfidelity = ["corrected", "text"]\n"energy.initial" = [9, 10]'),
+    "presets": ("", 'preset = ["small", "poison"]\nfidelity = ["corrected", "as_printed"]\n"energy.initial" = [9, 10]'),
     "a policy": ("", '"learning.policy" = ["ppo", "idle"]\n"energy.initial" = [9, 10]'),
 }
 

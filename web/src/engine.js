@@ -299,11 +299,13 @@ export class Engine {
   probeAgent(slot) {
     const at = this.exports.hedon_probe(slot) >>> 0;
     const { buffer } = this.memory;
+    const parts = new Uint32Array(buffer, at, 4);
+    const [reading, type, output, observed] = /** @type {[number, number, number, number]} */ ([...parts]);
     return {
-      reading: new Float32Array(buffer, at, 32).slice(),
-      type: new Uint8Array(buffer, at + 128, 32).slice(),
-      output: new Float32Array(buffer, at + 256, 3).slice(),
-      observed: new Float32Array(buffer, at + 320, 32).slice(),
+      reading: new Float32Array(buffer, reading, 32).slice(),
+      type: new Uint8Array(buffer, type, 32).slice(),
+      output: new Float32Array(buffer, output, 3).slice(),
+      observed: new Float32Array(buffer, observed, 32).slice(),
     };
   }
 

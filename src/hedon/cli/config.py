@@ -61,7 +61,7 @@ def show(
     \b
     Examples:
       hedon config show baseline
-      hedon config show poison --fidelity text --path food.poison
+      hedon config show poison --fidelity as_printed --path food.poison
       hedon config show my.toml --set energy.initial=20 --set sensor.scaling=unit > run.toml
     """
     from hedon.config import ConfigError, Problem, load_config
@@ -120,7 +120,7 @@ def check(source: Source, fidelity: Fidelity = None, overrides: Overrides = None
     config = load_config(source, fidelity, overrides or ())
     found = rules(config, rules_beside(source))
     for rule in found:
-        _ = rule.function  # whatever is wrong with its file is said here
+        _ = rule.compiled  # whatever is wrong with its file is said here
     typer.echo(f"{source}: valid (preset {config.preset}, fidelity {config.fidelity})")
     typer.echo(f"digest {digest(pinned(config, found))}")
 

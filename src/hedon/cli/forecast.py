@@ -27,7 +27,7 @@ def forecast(
       hedon forecast baseline
       hedon forecast baseline --set food.normal.growth_rate=1.0 --set hazard.kappa=0.02
       hedon forecast predator --species predator
-      hedon forecast my.toml --fidelity text
+      hedon forecast my.toml --fidelity as_printed
     """
     from hedon.cli.display.forecast import forecast_group
     from hedon.config import load_config

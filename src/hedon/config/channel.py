@@ -5,10 +5,10 @@ the caller gets, are lists of channels. The engine gets them as data and reads a
 `channel_value` in `engine/world/channel.h`.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hedon.config.neighbor import KIN, NUMBERS
 from hedon.config.settings import Settings
 from hedon.config.species import SpeciesConfig
 from hedon.config.store import ENERGY
@@ -25,6 +25,7 @@ class Source:
         unit: Of its numbers.
         of: What there are several of: names, or a word of `SEVERAL`.
         of_step: Whether it is known only when a step is done: who observes it gets that of the step before.
+        limits: The least and the greatest number, where they are known; what a store holds has its own.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Source:
     unit: str = "1"
     of: str | tuple[str, ...] = ("",)
     of_step: bool = False
+    limits: tuple[float, float] = (-math.inf, math.inf)
 
     @property
     def several(self) -> str:
@@ -47,51 +49,70 @@ SEVERAL: dict[str, tuple[tuple[str, ...], str]] = {
     "noses": (("<type>_<nose>",), "of each type that it smells, and each nose from 0 on"),
     "touches": (("<type>",), "of each type that it collides with"),
     "season": (("sine", "cosine"), "where a schedule has a period, or with sensor.season_period"),
-    "answers": (tuple(f"<query>_{number}" for number in NUMBERS), "of each query; kin, where it finds agents"),
-    "queries": (("<query>",), "of each query that finds agents"),
+    "queries": (("<query>",), "of each query"),
+    "companies": (("<query>",), "of each query that finds agents"),
     "harm": (("",), "where there are obstacles"),
     "mates": (("",), 'with birth.mating = "pairs"'),
     "drive": (("",), "with reward.drive_reduction_coef"),
 }
 """Words for what sources have several of, or only sometimes: how it shows in names, and where it is."""
+_SHARE, _CIRCLE, _COUNT = (0.0, 1.0), (-1.0, 1.0), (0.0, math.inf)
 SOURCES = {
     "velocity": Source("velocity_{}", "velocity along {}", "u/s", ("x", "y")),
-    "angle": Source("heading", "heading, 0 along y, not wrapped", "rad"),
-    "heading": Source("heading_{}", "{} of the heading at the start of the step", of=("sine", "cosine")),
+    "angle": Source("heading", "heading, 0 along y, not wrapped", "rad", limits=(-2 * math.pi, 2 * math.pi)),
+    "heading": Source(
+        "heading_{}", "{} of the heading at the start of the step", of=("sine", "cosine"), limits=_CIRCLE
+    ),
     "angular_velocity": Source("angular_velocity", "angular velocity", "rad/s"),
-    "store": Source("{}", "{} that it holds", "amount", "stores"),
-    "store_before": Source("{}_before", "{} before the meals and costs of the step", "amount", "stores", True),
+    "store": Source("{}", "{} that it holds", "amount", "stores", limits=_COUNT),
+    "store_before": Source(
+        "{}_before", "{} before the meals and costs of the step", "amount", "stores", True, limits=_COUNT
+    ),
     "store_change": Source("{}_change", "change of {} by the meals and costs of the step", "amount", "stores", True),
-    "meals": Source("eaten_{}", "pieces or agents of {} eaten in the step", of="meals", of_step=True),
-    "damage": Source("damage", "energy that obstacles took in the step", "energy", "harm", True),
-    "see_mean": Source("see_{}", "mean over the rays of what they read of {}, in [0, 1]", of="sees"),
-    "see_max": Source("see_{}_max", "the largest that a ray reads of {}, in [0, 1]", of="sees"),
-    "nearness": Source("nearness", "mean reading of the rays, 0 for those that met nothing"),
-    "smell": Source("smell_{}", "smell of {}, with the number of the nose, in [0, 1]", of="noses"),
-    "smell_mean": Source("smell_{}", "mean over the noses of the smell of {}, in [0, 1]", of="smells"),
-    "contacts": Source("contacts_{}", "touch sectors that feel {}", of="touches"),
-    "touched": Source("touched", "touch sectors that feel anything"),
-    "effort": Source("effort", "norm of the forces of both motors, as a share of its largest", of_step=True),
+    "meals": Source("eaten_{}", "pieces or agents of {} eaten in the step", of="meals", of_step=True, limits=_COUNT),
+    "damage": Source("damage", "energy that obstacles took in the step", "energy", "harm", True, limits=_COUNT),
+    "see_mean": Source("see_{}", "mean over the rays of what they read of {}", of="sees", limits=_SHARE),
+    "see_max": Source("see_{}_max", "the largest that a ray reads of {}", of="sees", limits=_SHARE),
+    "nearness": Source("nearness", "mean reading of the rays, 0 for those that met nothing", limits=_SHARE),
+    "smell": Source("smell_{}", "smell of {}, with the number of the nose", of="noses", limits=_SHARE),
+    "smell_mean": Source("smell_{}", "mean over the noses of the smell of {}", of="smells", limits=_SHARE),
+    "contacts": Source("contacts_{}", "touch sectors that feel {}", of="touches", limits=_COUNT),
+    "touched": Source("touched", "touch sectors that feel anything", limits=_COUNT),
+    "neighbor_count": Source("{}_count", "how many {} finds as the step begins", of="queries", limits=_COUNT),
+    "neighbor_kin": Source(
+        "{}_kin", "how many of these are its parents, children or siblings", of="companies", limits=_COUNT
+    ),
+    "neighbor_distance": Source("{}_distance", "distance of the nearest of these", "u", "queries", limits=_COUNT),
+    "neighbor_bearing": Source(
+        *("{}_bearing", "direction of the nearest of these, 0 ahead, positive to the left", "rad", "queries"),
+        limits=(-math.pi, math.pi),
+    ),
+    "neighbor_meals": Source(
+        "{}_meals", "meals, in the step, of agents that {} finds", of="companies", of_step=True, limits=_COUNT
+    ),
+    "effort": Source(
+        "effort", "norm of the forces of both motors, as a share of its largest", of_step=True, limits=_COUNT
+    ),
     "force": Source("force_{}", "force of the {} motor", "mass·u/s²", ("left", "right"), True),
-    "force_norm": Source("force", "norm of the forces of both motors", "mass·u/s²", of_step=True),
-    "moved": Source("moved", "distance moved in the step", "u", of_step=True),
+    "force_norm": Source("force", "norm of the forces of both motors", "mass·u/s²", of_step=True, limits=_COUNT),
+    "moved": Source("moved", "distance moved in the step", "u", of_step=True, limits=_COUNT),
     "position": Source("{}", "place of its center along {}", "u", ("x", "y")),
-    "age": Source("age", "steps lived, the present one included", "step"),
-    "births": Source("births", "children that it had at the end of the step before"),
-    "waits": Source("waits", "1 while it waits for a second parent", of="mates"),
+    "age": Source("age", "steps lived, the present one included", "step", limits=_COUNT),
+    "births": Source("births", "children that it had at the end of the step before", limits=_COUNT),
+    "waits": Source("waits", "1 while it waits for a second parent", of="mates", limits=_SHARE),
     "drive_reduction": Source(
         "drive_reduction", "how much closer to their set points the step brought its stores", of="drive", of_step=True
     ),
-    "season": Source("season_{}", "{} of the time of the year", of="season"),
-    "step": Source("step", "steps that the world had done before the present one", "step"),
-    "alive": Source("alive", "living agents of its species"),
-    "neighbor": Source("{}", "{}, as the query finds it when the step begins", of="answers"),
-    "neighbor_meals": Source("{}_meals", "meals, in the step, of those that {} finds", of="queries", of_step=True),
-    "one": Source("one", "1 in every step"),
+    "season": Source("season_{}", "{} of the time of the year", of="season", limits=_CIRCLE),
+    "step": Source("step", "steps that the world had done before the present one", "step", limits=_COUNT),
+    "alive": Source("alive", "living agents of its species", limits=_COUNT),
+    "one": Source("one", "1 in every step", limits=(1.0, 1.0)),
 }
 """Where the engine reads channels, by its names of the sources."""
 LAST = "last"
 """The source of what was known of the step before: the engine keeps it for the next observation."""
+QUERIED = tuple(name for name, source in SOURCES.items() if source.of in ("queries", "companies"))
+"""The sources of what queries about neighbors find."""
 RECORDED = (
     *(("age", 0), ("store_before", 0), ("store", 0), ("moved", 0), ("nearness", 0), ("force", 0), ("force", 1)),
     *(("position", 0), ("position", 1), ("step", 0), ("alive", 0)),
@@ -111,6 +132,7 @@ class Channel:
         place: The path of the scale in the species, "" where no setting says it.
         meaning: What it is, as a phrase.
         unit: Of the number, before it is divided.
+        limits: The least and the greatest number, before it is divided.
     """
 
     name: str
@@ -120,6 +142,7 @@ class Channel:
     place: str = ""
     meaning: str = ""
     unit: str = "1"
+    limits: tuple[float, float] = (-math.inf, math.inf)
 
     @property
     def of_step(self) -> bool:
@@ -148,18 +171,19 @@ def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
         "noses": [f"{name}_{nose}" for name in smells for nose in range(species.sensor.noses)],
         "touches": chosen(config, species.body.collides),
         "season": ("sine", "cosine") if season_place(config, species) else (),
-        "answers": [
-            f"{name}_{number}" if number != KIN or name in alive else None
-            for name in species.neighbor
-            for number in NUMBERS
-        ],
-        "queries": [name if name in alive else None for name in species.neighbor],
+        "queries": tuple(species.neighbor),
+        "companies": [name if name in alive else None for name in species.neighbor],
         "harm": ("",) * (config.obstacle.count > 0),
         "mates": ("",) * (species.birth.mating == "pairs"),
         "drive": ("",) * (species.reward.drive_reduction_coef != 0),
     }
     return {
-        (key, i): Channel(source.name.format(each), key, i, meaning=source.meaning.format(each), unit=source.unit)
+        (key, i): Channel(
+            *(source.name.format(each), key, i),
+            meaning=source.meaning.format(each),
+            unit=source.unit,
+            limits=source.limits,
+        )
         for key, source in SOURCES.items()
         for i, each in enumerate(names[source.of] if isinstance(source.of, str) else source.of)
         if each is not None
@@ -256,5 +280,5 @@ def recorded_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel,
         known: all its channels.
     """
     stores = [known[source, i + 1] for i in range(len(species.store)) for source in ("store_before", "store")]
-    asked = (each for each in known.values() if each.source in ("neighbor", "neighbor_meals"))
+    asked = (each for each in known.values() if each.source in QUERIED)
     return (*(known[each] for each in RECORDED), *stores, *asked)

@@ -4,19 +4,18 @@ import math
 import re
 from collections.abc import Sequence
 
-from hedon.config.channel import called, known_channels, plain_channels
+from hedon.config.channel import QUERIED, SOURCES, called, known_channels, plain_channels
 from hedon.config.evolution import GATED
 from hedon.config.expression import NO_GENE, expressed, settable
 from hedon.config.field import leaves, value_at
 from hedon.config.layout import Gene, layout_of, rule_columns, store_columns
-from hedon.config.neighbor import MEALS, NUMBERS
 from hedon.config.problem import Check, nearest, single
 from hedon.config.room import MAX_FORCE, MAX_GENES, MAX_OBSERVED, MAX_QUERIES, MAX_SPECIES, MAX_STORES, MAX_TOUCH_BITS
 from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.settings import Settings
 from hedon.config.species import EVERYTHING, RULE_USES, SpeciesConfig
 from hedon.config.store import ENERGY
-from hedon.config.type import SOLID, chosen, diet, smelled
+from hedon.config.type import SOLID, asked_for, chosen, diet, smelled
 from hedon.text import brief
 
 RESERVED_STORES = (
@@ -25,10 +24,11 @@ RESERVED_STORES = (
     *("force_left", "force_right", "agent_id", "parent_id", "mate_id", "birth_step", "death_step", "birth_energy"),
     *("energy_gained", "energy_spent", "mean_force_left", "mean_force_right", "reward_sum"),
     *("world", "seed", "kind", "id"),
+    *(source.name for source in SOURCES.values() if "{}" not in source.name),
 )
 """Names of other numbers of an agent, which no store can have."""
 NAME = r"[a-z][a-z0-9_]{0,31}"
-"""What kinds of food, species, stores, and genes and queries of rules may be called."""
+"""What kinds of food, species, stores, queries, and genes for rules may be called."""
 NAME_RULE = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
 RESERVED_STARTS = ("eaten_", "w_", "g_", "neutral_", "extra_", "set_point")
 """How names of meals and genes begin in the records."""
@@ -174,10 +174,13 @@ def _for_rules(check: Check, config: Settings, species: SpeciesConfig, path: str
     if species.genome.extra and not ruled:
         check.add(f"{path}genome.extra", f"only a rule in Python reads this: give {rules}")
     reward = species.reward
-    read = {*species.sensor.observes, reward.gate, *(pay.channel or name for name, pay in reward.pay.items())}
+    read = {*species.sensor.observes, *(pay.channel or name for name, pay in reward.pay.items())}
+    read |= {reward.gate} if reward.family in GATED else set()
     for name, query in species.neighbor.items():
         _known(check, f"{path}neighbor.{name}.of", query.of, [*config.species, *config.food])
-        if not ruled and not read & {f"{name}_{number}" for number in (*NUMBERS, MEALS)}:
+        finds = bool(asked_for(config, query.of))
+        check.need(finds, f"{path}neighbor.{name}.of", "must name a species or a kind of food")
+        if not ruled and not read & {SOURCES[each].name.format(name) for each in QUERIED}:
             rule = f"nothing reads its channels, such as {name}_count: sensor.observes, reward.pay and reward.gate do"
             check.add(f"{path}neighbor.{name}", f"{rule}, and {rules}")
     if len(species.neighbor) > MAX_QUERIES:
@@ -211,7 +214,7 @@ def _channels(check: Check, config: Settings, species: SpeciesConfig, path: str)
             rule = f"there is no channel {brief(name)!r} here{given}; there are " + ", ".join(names)
             check.add(place, rule, nearest(name, names))
         elif count > 1:
-            check.add(place, f"{count} channels are called {name}: rename a food, a species or a store")
+            check.add(place, f"{count} channels are called {name}: rename a food, a species, a store or a query")
 
     need(reward.gate, f"{path}reward.gate")
     for name, pay in reward.pay.items():
@@ -221,7 +224,8 @@ def _channels(check: Check, config: Settings, species: SpeciesConfig, path: str)
     observed = [channel.name for channel in plain_channels(species, known)]
     for name in species.sensor.observes:
         need(name, f"{path}sensor.observes.{name}")
-        check.need(name not in observed, f"{path}sensor.observes.{name}", "it observes this already")
+        twice = name in observed and len(called(known, name)) == 1
+        check.need(not twice, f"{path}sensor.observes.{name}", "it observes this already")
 
 
 def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:

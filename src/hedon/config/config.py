@@ -33,7 +33,10 @@ class Config(Settings):
 
         Raises:
             ConfigError: There is no such setting, or the value cannot be used.
+            ArgumentError: The path is no text.
         """
+        if not isinstance(path, str):
+            raise ArgumentError(f"path: must be that of a setting, such as energy.initial, not {brief(repr(path))}")
         tables, names = asdict(self), parse_path(path)
         if not names:
             raise ConfigError(self.name, [Problem(repr(path), "must be the path of a setting, as in energy.initial")])

@@ -9,6 +9,8 @@ from hedon.config.field import Setting, inner_sections, leaves, sections, settin
 from hedon.config.problem import format_value
 from hedon.config.settings import PROVENANCE, Settings
 from hedon.config.species import ONLY, PER_SPECIES, default_path
+from hedon.error import ArgumentError
+from hedon.text import brief
 
 SCHEMA = "1"
 """The version of the schema of configs: which settings there are, and what they mean. A digest is of a config under it;
@@ -110,7 +112,13 @@ def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:
     Returns:
         (path, value in a, value in b) in order, with None for a setting that is absent. If the kinds of food or
         their order differ, also the path "food" with their names.
+
+    Raises:
+        ArgumentError: One of them is no config.
     """
+    for name, each in (("a", a), ("b", b)):
+        if not isinstance(each, Settings):
+            raise ArgumentError(f"{name}: must be a Config, as `load_config` gives it, not {brief(repr(each))}")
     left, right = flatten(a), flatten(b)
     kinds = [("food", tuple(a.food), tuple(b.food))] if list(a.food) != list(b.food) else []
     paths = dict.fromkeys([*left, *right])

@@ -152,13 +152,17 @@ def _laws(table: Table, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def settle_stores(tables: Table) -> Iterator[Problem]:
-    """Removes the stores that are false from each species, in place; yields those that are new but have no capacity."""
+    """Removes the stores and queries that are false from each species, in place; yields stores without a capacity."""
     species = tables.get("species")
     for name, own in species.items() if isinstance(species, dict) else ():
-        stores = own.get("store") if isinstance(own, dict) else None
-        if not isinstance(stores, dict):
+        if not isinstance(own, dict):
             continue
-        own["store"] = kept = {store: value for store, value in stores.items() if value is not False}
+        for section in ("neighbor", "store"):
+            if isinstance(own.get(section), dict):
+                own[section] = {each: value for each, value in own[section].items() if value is not False}
+        kept = own.get("store")
+        if not isinstance(kept, dict):
+            continue
         known = [store for store, value in kept.items() if isinstance(value, dict) and "capacity" in value]
         for store, value in kept.items():
             if isinstance(value, dict) and store not in known:

@@ -20,7 +20,7 @@ from hedon.config.layer import (
     stack,
     with_defaults,
 )
-from hedon.config.migrate import clashes, is_earlier, migrate_text, migrated, renamed
+from hedon.config.migrate import FIDELITY_NOW, clashes, is_earlier, migrate_text, migrated, renamed
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest
 from hedon.config.rule_path import with_absolute_rules
@@ -57,7 +57,7 @@ PRESETS = (*PAPER_PRESETS, *SEQUEL_PRESETS, *OUR_PRESETS)
 _MIGRATE = " (`hedon config migrate FILE` rewrites a file)"
 MISTYPED = 0.75
 """How alike two names of species are at least, if one is a typing error for the other: a letter of four."""
-FIDELITIES = ("corrected", "released", "text")
+FIDELITIES = ("corrected", "released", "as_printed")
 """Variants of every preset: correct algorithms, the faults of the released code, the values as printed."""
 
 
@@ -221,7 +221,7 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
     for field, names in (("preset", PRESETS), ("fidelity", FIDELITIES)):
         value = own[field]
         if value not in names:
-            near = nearest(value, names) if isinstance(value, str) else None
+            near = FIDELITY_NOW.get(value) or nearest(value, names) if isinstance(value, str) else None
             problems.append(Problem(field, "must be one of " + ", ".join(names), format_value(value), near))
     if problems:
         return []

@@ -59,6 +59,8 @@ VALUES = {
     "reward.family": {"fed": "above", "hungry": "below", "by_age": "between"},
 }
 """Choices of settings that have other names now, by the paths of today."""
+FIDELITY_NOW = {"text": "as_printed"}
+"""Fidelities that have other names now."""
 GATES = {"by_age": "age"}
 """Families of rewards whose gate a file must name now, by their names before."""
 SENSES = ("see", "smell")
@@ -211,6 +213,8 @@ def _law(genome: Table, mean: str = "") -> Table:
 
 def _rename(root: Any, owners: Sequence[Any], table: Callable[[], Any] = dict, row: Callable[[], Any] = dict) -> None:
     """Gives settings and choices the names of this version, in place."""
+    if root.get("fidelity") in FIDELITY_NOW:
+        root["fidelity"] = FIDELITY_NOW[root["fidelity"]]
     for old, new in MOVED.items():
         (section, name), (target, *between, now) = old.split("."), new.split(".")
         for owner in owners:

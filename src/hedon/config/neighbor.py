@@ -4,12 +4,6 @@ from dataclasses import dataclass
 
 from hedon.config.field import OURS, setting
 
-KIN = "kin"
-NUMBERS = ("count", KIN, "distance", "bearing")
-"""The numbers of a query as a step begins, in order; `CLOSE_count` is one of the query `CLOSE`."""
-MEALS = "meals"
-"""The number of a query that is known when a step is done."""
-
 
 @dataclass(frozen=True, slots=True)
 class NeighborConfig:

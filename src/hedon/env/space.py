@@ -12,8 +12,6 @@ from hedon.config.layout import layouts
 from hedon.env.group import ACTIONS, Group
 from hedon.error import HedonError
 
-TURN = 2 * np.pi
-
 
 def bounds(config: Config, name: str) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """The least and the greatest that each entry of an observation can be, (entries,) each.
@@ -26,14 +24,13 @@ def bounds(config: Config, name: str) -> tuple[NDArray[np.float32], NDArray[np.f
     """
     species, layout = config.species[name], layouts(config)[name]
     stores = list(species.stores.values())
-    limit = {"heading": (-1.0, 1.0), "smell": (0.0, 1.0), "angle": (-TURN, TURN)}
     low = [-1.0] * (len(layout.sees) * species.sensor.ray_count)
     low += [0.0] * (len(layout.touches) * species.sensor.touch_sectors)
     high = [1.0] * len(low)
     for channel in layout.observed:
-        least, most = limit.get(channel.source, (-np.inf, np.inf))
+        least, most = channel.limits
         if channel.source == "store":
-            least, most = 0.0, stores[channel.index].capacity
+            most = stores[channel.index].capacity
         low.append(least / channel.scale)
         high.append(most / channel.scale)
     return np.array(low, np.float32), np.array(high, np.float32)

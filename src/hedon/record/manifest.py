@@ -123,7 +123,7 @@ class Manifest:
         prey: names of the species that are eaten, by others or by their own kind.
         steps_asked: total steps that each world is to run [step].
         preset: name of the preset that the config is based on.
-        fidelity: "corrected", "released" or "text".
+        fidelity: "corrected", "released" or "as_printed".
         name: name of the config: by default the preset, or the file without its ending.
         modified: whether any setting differs from the preset with the fidelity; None in old manifests.
         config_digest: digest of the resolved config.

@@ -109,7 +109,7 @@ WORLD_SEVERAL_KEYS: dict[str, str] = {
 CAUSE_KEYS: dict[str, str] = {
     "deaths_starved": "agents that starved",
     "deaths_eaten": "agents that were eaten; where agents eat agents, as all below",
-    "prey_per_step": "mean over the dead of agents eaten / lifetime [1/step]; null for who eats none",
+    "prey_per_step": "mean over the dead of agents eaten / lifetime [1/step]; null for a species that eats no agents",
     "prey_per_agent_step": "agents eaten by all / steps lived by all [1/step]; likewise",
 }
 """Beside `FARE_KEYS` where agents die of more than age and energy."""

@@ -9,7 +9,7 @@ from hedon_studies.kanagawa_doya_2024.fault import FACTORS
 from hedon_studies.kanagawa_doya_2024.mutation import condition_drifts, drift_parts
 
 CONDITIONS = (
-    Condition("frozen", overrides=(FACTORS["noise"],), fidelity="corrected"),
+    Condition("tabulated", overrides=(FACTORS["noise"],), fidelity="corrected"),
     Condition("released", fidelity="released"),
     Condition("independent", fidelity="corrected"),
 )
@@ -36,7 +36,7 @@ def _agreement(agree: list[bool]) -> str:
 
 NOISE = Item(
     "noise",
-    "Frozen mutation noise",
+    "Tabulated mutation noise",
     "The released program draws the mutations of each window from the same small table. Does the table's mean "
     "predict where the weights go, the neutral marker's included?",
     make_noise,

@@ -109,7 +109,7 @@ def test_any_override_survives_dump_and_load(data: st.DataObject, tmp_path_facto
 
 def test_digest_knows_what_matters() -> None:
     config = load_config("poor")
-    renamed = dataclasses.replace(config, name="x", preset="y", fidelity="text")
+    renamed = dataclasses.replace(config, name="x", preset="y", fidelity="as_printed")
     assert digest(renamed) == digest(config)
     assert digest(load_config("poor", overrides=["food.poor.color=#000000"])) == digest(config)
     backwards = dataclasses.replace(config, food=dict(reversed(config.food.items())))

@@ -127,4 +127,4 @@ def test_distance_is_in_arena_units() -> None:
         return distance_sd(config.arena, config.species["agent"].birth)
 
     assert sd(load_config("baseline")) == 100.0
-    assert sd(load_config("small", "text")) == pytest.approx(28.8)
+    assert sd(load_config("small", "as_printed")) == pytest.approx(28.8)

@@ -82,8 +82,8 @@ def test_released_differs_in_solver_critic_growth_and_the_rules_of_birth_and_sen
 
 
 @pytest.mark.parametrize("preset", PAPER_PRESETS)
-def test_text_is_what_the_paper_prints(preset: str) -> None:
-    text, corrected = load_config(preset, "text"), load_config(preset)
+def test_as_printed_is_what_the_paper_prints(preset: str) -> None:
+    text, corrected = load_config(preset, "as_printed"), load_config(preset)
     assert all(food.growth_rate == 0.02 for food in text.food.values())
     own, undone = text.species["agent"], dataclasses.replace(text, fidelity="corrected")
     for path, value in (
@@ -102,9 +102,9 @@ def test_text_is_what_the_paper_prints(preset: str) -> None:
 
 
 def test_later_layers_win(write: Write) -> None:
-    path = write('preset = "poor"\nfidelity = "text"\n[energy]\ninitial = 30\ncapacity = 300\n')
+    path = write('preset = "poor"\nfidelity = "as_printed"\n[energy]\ninitial = 30\ncapacity = 300\n')
     config = load_config(path, overrides=["energy.capacity=200", "energy.capacity=250"])
-    assert (config.name, config.preset, config.fidelity) == ("my", "poor", "text")
+    assert (config.name, config.preset, config.fidelity) == ("my", "poor", "as_printed")
     assert (config.species["agent"].energy.initial, config.species["agent"].energy.capacity) == (30.0, 250.0)
     assert isinstance(config.species["agent"].energy.initial, float)
     assert config.species["agent"].learning.entropy_coef == 0.0
@@ -112,7 +112,7 @@ def test_later_layers_win(write: Write) -> None:
 
 
 def test_fidelity_of_the_call_wins_over_the_files(write: Write) -> None:
-    config = load_config(write('fidelity = "text"\n'), fidelity="released")
+    config = load_config(write('fidelity = "as_printed"\n'), fidelity="released")
     assert config.fidelity == "released"
     assert config.species["agent"].energy.initial == 40.0
     assert config.preset == "baseline"
@@ -166,10 +166,10 @@ def test_file_errors(write: Write, tmp_path: Path) -> None:
 
 def test_bad_names_at_the_top_come_together(write: Write) -> None:
     path = write('preset = "smal"\nfidelity = 3\ncomplete = false\n')
-    message = problems(path, overrides=["x", "preset=small", "fidelity=text", "complete=true"])
+    message = problems(path, overrides=["x", "preset=small", "fidelity=as_printed", "complete=true"])
     assert 'preset = "smal": must be one of baseline, small' in message
     assert "did you mean small?" in message
-    assert "fidelity = 3: must be one of corrected, released, text" in message
+    assert "fidelity = 3: must be one of corrected, released, as_printed" in message
     assert "complete = false: must be true or left out" in message
     assert 'must be "section.name=value"' in message
     for name in ("preset", "fidelity", "complete"):
@@ -177,11 +177,11 @@ def test_bad_names_at_the_top_come_together(write: Write) -> None:
 
 
 def test_complete_file_takes_no_fidelity(write: Write) -> None:
-    path = write(dump_toml(load_config("baseline")).replace('fidelity = "corrected"', 'fidelity = "text"'))
-    assert load_config(path) == dataclasses.replace(load_config("baseline"), fidelity="text"), (
+    path = write(dump_toml(load_config("baseline")).replace('fidelity = "corrected"', 'fidelity = "as_printed"'))
+    assert load_config(path) == dataclasses.replace(load_config("baseline"), fidelity="as_printed"), (
         "nothing is taken from the overlay"
     )
-    assert load_config(path, "text") == load_config(path)
+    assert load_config(path, "as_printed") == load_config(path)
     assert "--fidelity = released: the file already has all settings" in problems(path, "released")
 
 
@@ -268,7 +268,7 @@ def test_a_file_without_a_name_gives_one_that_folders_can_have(tmp_path: Path, f
 def test_a_config_is_modified_where_a_setting_differs_from_its_preset(write: Write) -> None:
     assert not is_modified(load_config("poison", "released"))
     assert not is_modified(load_config("poison", overrides=['food.poison.color="#112233"']))
-    assert not is_modified(load_config(write('preset = "small"\nfidelity = "text"\n')))
+    assert not is_modified(load_config(write('preset = "small"\nfidelity = "as_printed"\n')))
     assert is_modified(load_config("poison", overrides=["energy.initial=7"]))
     assert is_modified(load_config(write("[food.mushroom]\ngives.energy = 3.0\n")))
     assert is_modified(dataclasses.replace(Config(), preset="mine"))

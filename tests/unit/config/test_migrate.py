@@ -119,6 +119,7 @@ def test_the_command_rewrites_short_and_complete_files(tmp_path: Path) -> None:
     [
         ("[food]\nbad = {energy = 0.5, toxin = 2.0}", "food.bad.gives.toxin", 2.0),
         ("food.bad = {energy = 0.5}", "food.bad.gives.energy", 0.5),
+        ('fidelity = "text"', "fidelity", "as_printed"),
         ("reward = {see = {agent = {coef = 0.5}}}", "species.agent.reward.pay.see_agent.coef", 0.5),
         ("species.a = {birth = {delay = 2.0}}\nspecies.b = {}", "species.a.birth.logit_offset", 2.0),
         (

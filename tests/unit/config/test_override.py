@@ -39,7 +39,7 @@ def test_parse_override(text: str, tables: dict[str, Any] | None) -> None:
 
 
 @pytest.mark.parametrize(
-    "overrides", [["energy.inital=3"], ["energy.initial"], ["=3"], ["energy.initial=a b"], ["fidelity=text"]]
+    "overrides", [["energy.inital=3"], ["energy.initial"], ["=3"], ["energy.initial=a b"], ["fidelity=as_printed"]]
 )
 def test_errors_name_the_change_and_no_option_of_the_command_line(overrides: list[str]) -> None:
     with pytest.raises(ConfigError, match=re.escape(overrides[0][:8])) as caught:

@@ -44,7 +44,7 @@ def test_every_setting_stands_once_with_its_value_and_what_the_page_of_settings_
 def test_fidelities_are_told_exactly_where_they_differ() -> None:
     corrected, *others = (load_config("baseline", fidelity) for fidelity in FIDELITIES)
     expected = {path for other in others for path, _, _ in diff(corrected, other)}
-    told = {row["setting"]: row for row in settings("corrected") if row.get("in_text") is not None}
+    told = {row["setting"]: row for row in settings("corrected") if row.get("in_as_printed") is not None}
     assert told.keys() == expected
     growth = told["food.normal.growth_rate"]
     assert [growth[f"in_{fidelity}"] for fidelity in FIDELITIES] == ["0.2", "1.0", "0.02"]
@@ -53,7 +53,7 @@ def test_fidelities_are_told_exactly_where_they_differ() -> None:
 def test_columns_without_any_difference_are_left_out() -> None:
     found = tables("corrected")
     assert "The same in all fidelities" not in "".join(each.note for each in found.values())
-    assert "in_text" in found["parameters_learning"].rows.columns
+    assert "in_as_printed" in found["parameters_learning"].rows.columns
     assert "The same" not in found["parameters_learning"].note
 
 
@@ -72,5 +72,5 @@ def test_conditions_tell_what_presets_change() -> None:
 
 def test_nothing_that_a_reader_needs_is_hidden_on_a_page() -> None:
     headers, _ = cells(tables("corrected")["parameters_food"])
-    columns = ["setting", "meaning", "value", "unit", "origin", "in corrected", "in released", "in text"]
+    columns = ["setting", "meaning", "value", "unit", "origin", "in corrected", "in released", "in as printed"]
     assert headers == columns

@@ -62,10 +62,10 @@ def test_a_request_overrules_the_scale_of_all_but_pictures() -> None:
 
 
 def test_an_arm_has_its_own_fidelity_or_that_of_the_request() -> None:
-    items = (an_item("a", Condition("asked"), Condition("own", fidelity="text")),)
+    items = (an_item("a", Condition("asked"), Condition("own", fidelity="as_printed")),)
     asked, own = needs(Request(items, "released"))
     assert asked.config.food["normal"].growth_rate == 1.0
-    assert own.config.fidelity == "text"
+    assert own.config.fidelity == "as_printed"
 
 
 def begun(job: RunJob) -> bool:
@@ -154,7 +154,10 @@ def test_a_gathered_world_goes_on_after_its_run_was_lengthened(tmp_path: Path) -
 def test_names_of_runs_tell_settings_apart() -> None:
     assert folder_name(Condition("x").config("corrected")) == "baseline-corrected"
     changed = Condition("x", "small", ("energy.basic_cost=0.002", "world.mutation_noise=tabulated"))
-    assert folder_name(changed.config("text")) == "small-text-world.mutation_noise-tabulated-energy.basic_cost-0.002"
+    assert (
+        folder_name(changed.config("as_printed"))
+        == "small-as_printed-world.mutation_noise-tabulated-energy.basic_cost-0.002"
+    )
     long = [folder_name(condition.config("corrected")) for condition in (BASE, FAST)]
     assert max(map(len, long)) < 100
     assert long[0] != long[1]

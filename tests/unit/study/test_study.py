@@ -61,7 +61,7 @@ def test_an_item_is_made_from_no_world_one_and_several(item: Item, worlds: list[
 def test_arms_share_runs_with_other_items() -> None:
     """All faults are settings of the released program, and no fault is the corrected baseline, whatever is
     reproduced."""
-    faults = {condition.label: condition.config("text") for condition in fault.CONDITIONS}
+    faults = {condition.label: condition.config("as_printed") for condition in fault.CONDITIONS}
     assert list(faults) == list(fault.CELLS)
     assert len({digest(config) for config in faults.values()}) == 16
     released_digest = digest(load_config("baseline", "released"))
@@ -77,14 +77,14 @@ def test_arms_share_runs_with_other_items() -> None:
         path: value for path, _, value in diff(load_config("baseline"), load_config("baseline", "released"))
     }
     assert all(released_has[path] == value for path, _, value in changes)
-    assert released_digest == digest(released.CONDITIONS[0].config("text"))
+    assert released_digest == digest(released.CONDITIONS[0].config("as_printed"))
     assert digest(faults["none"]) == corrected_digest
-    assert [digest(condition.config("text")) for condition in noise.CONDITIONS] == [
+    assert [digest(condition.config("as_printed")) for condition in noise.CONDITIONS] == [
         digest(faults["noise"]),
         released_digest,
         corrected_digest,
     ]
-    with_bonus, without = (condition.config("text") for condition in entropy.CONDITIONS)
+    with_bonus, without = (condition.config("as_printed") for condition in entropy.CONDITIONS)
     assert digest(with_bonus) == corrected_digest
     assert [arm.species["agent"].learning.entropy_coef for arm in (with_bonus, without)] == [0.001, 0.0]
 
@@ -221,7 +221,9 @@ def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
     rows = {row["response"]: row for row in tables["acting"].rows.iter_rows(named=True)}
     assert rows["food_step"]["change"] == pytest.approx(0.5)
     assert (rows["lifetime"]["change"], rows["lifetime"]["low"]) == pytest.approx((1.0, 1.0))
-    precisions = [condition.config("text").species["agent"].learning.acting_weights for condition in acting.CONDITIONS]
+    precisions = [
+        condition.config("as_printed").species["agent"].learning.acting_weights for condition in acting.CONDITIONS
+    ]
     assert precisions == [acting.FULL, acting.HALF]
 
 
