@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from hedon.config.config import Config
-from hedon.config.species import ONLY
+from hedon.config.schema.species import ONLY
 
 HIDDEN = 64
 """Units of each hidden layer."""

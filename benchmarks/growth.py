@@ -10,7 +10,7 @@ from benchmarks.scene import peopled, scene_of
 from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.engine import engine_input
-from hedon.config.species import ONLY
+from hedon.config.schema.species import ONLY
 from hedon.experiment.simulation import Simulation
 
 TILES = ((1, 1), (2, 5), (10, 10), (20, 25))

@@ -12,7 +12,7 @@ from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.engine import engine_config
 from hedon.config.layout import layouts, observation_columns
-from hedon.config.species import ONLY
+from hedon.config.schema.species import ONLY
 
 FORWARD_ROWS = 10_240
 """Observations in one timed call, enough that the cost of the call itself does not matter."""

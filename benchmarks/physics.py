@@ -12,10 +12,10 @@ from benchmarks.measure import Row, Table, seconds_of, spread
 from benchmarks.plan import Plan
 from benchmarks.scene import peopled, scene_of
 from hedon import _engine
-from hedon.config.arena import walls
 from hedon.config.config import Config
 from hedon.config.engine import engine_config
-from hedon.config.species import ONLY
+from hedon.config.schema.arena import walls
+from hedon.config.schema.species import ONLY
 
 PIECE_STEPS = 20
 """Steps after which motor forces change."""

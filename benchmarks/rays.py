@@ -9,8 +9,8 @@ from benchmarks.measure import Row, Table, interleave, median, spread
 from benchmarks.plan import Plan
 from benchmarks.scene import peopled
 from hedon import _engine
-from hedon.config.arena import walls
-from hedon.config.species import ONLY
+from hedon.config.schema.arena import walls
+from hedon.config.schema.species import ONLY
 from hedon.experiment.world import World
 
 AGENTS = 8

@@ -15,7 +15,7 @@ from benchmarks.measure import Row, Table
 from benchmarks.plan import Plan
 from benchmarks.scene import peopled
 from hedon.config.dump import dump_toml
-from hedon.config.species import ONLY
+from hedon.config.schema.species import ONLY
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.run import run
 from hedon.experiment.sample import PopulationSampler, Rows, agent_rows

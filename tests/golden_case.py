@@ -12,7 +12,7 @@ from named import Quantities, quantities
 
 from hedon.config.load import FIDELITIES, PRESETS, load_config
 from hedon.config.problem import format_value
-from hedon.config.species import ONLY
+from hedon.config.schema.species import ONLY
 from hedon.experiment.simulation import Simulation
 
 STEPS = 100

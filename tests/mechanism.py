@@ -19,7 +19,7 @@ from typing import Any
 from hedon.config.config import Config
 from hedon.config.load import load_config
 from hedon.config.problem import format_value
-from hedon.config.species import ONLY, PER_SPECIES
+from hedon.config.schema.species import ONLY, PER_SPECIES
 
 FOLDER = Path(__file__).parent / "data" / "mechanism"
 NAMES = ("ant", "bee", "cat")

@@ -7,8 +7,8 @@ import numpy as np
 from observed_touch import touch_bits
 from reference.state import COUNTED, HARMED, HUNTED, Agent, Deed, Newborn, Stock, Vacancy, World
 
-from hedon.config.arena import walls
 from hedon.config.layout import SpeciesLayout, layouts
+from hedon.config.schema.arena import walls
 from hedon.experiment.simulation import Simulation
 from hedon.record.schema import CAUSES
 

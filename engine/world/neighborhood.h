@@ -1,4 +1,4 @@
-/// What is near an agent: queries. `hedon.config.neighbor` says what each number is.
+/// What is near an agent: queries. `hedon.config.schema.neighbor` says what each number is.
 #pragma once
 
 #include <cstdint>

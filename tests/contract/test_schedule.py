@@ -7,7 +7,7 @@ import pytest
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation
 
 from hedon.config import ConfigError, load_config
-from hedon.config.schedule import ScheduleConfig
+from hedon.config.schema.schedule import ScheduleConfig
 from hedon.demography.schedule import factor_at, mean_factor
 
 FOOD = "food.normal.schedule."

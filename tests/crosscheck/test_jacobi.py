@@ -8,7 +8,7 @@ import pytest
 from jacobi_reference import DT, LEAST_DEPTH, ReferenceScene
 from physics_scene import MASS, arena_walls, drive, make_scene, positions, read
 
-from hedon.config.arena import ArenaConfig, walls
+from hedon.config.schema.arena import ArenaConfig, walls
 
 RECORDED = np.load(Path(__file__).parents[1] / "data" / "crowd.npz")
 KINDS = ("body", "circle", "wall")

@@ -14,8 +14,8 @@ from worlds import set_scene
 from hedon.config.config import Config
 from hedon.config.field import Setting, leaves, sections, settings
 from hedon.config.load import load_config
-from hedon.config.physics import PhysicsConfig
-from hedon.config.settings import PROVENANCE
+from hedon.config.schema.physics import PhysicsConfig
+from hedon.config.schema.settings import PROVENANCE
 from hedon.experiment.simulation import Simulation
 from hedon.record.founder import make_founders
 

@@ -10,7 +10,7 @@ from learning_case import KERNELS
 from ray_reference import Scene, cast, is_delicate
 from worlds import make_simulation, set_scene
 
-from hedon.config.arena import walls
+from hedon.config.schema.arena import walls
 from hedon.experiment.simulation import Simulation
 
 ROOM = ("population.capacity=300", "food.normal.capacity=300")

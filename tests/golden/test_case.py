@@ -10,8 +10,8 @@ from hedon.config.config import Config
 from hedon.config.field import sections, settings
 from hedon.config.layout import FAMILY_GENES, LEARNING_GENES
 from hedon.config.load import FIDELITIES, PRESETS
-from hedon.config.settings import PROVENANCE
-from hedon.config.species import PER_SPECIES, SpeciesConfig
+from hedon.config.schema.settings import PROVENANCE
+from hedon.config.schema.species import PER_SPECIES, SpeciesConfig
 
 AS_DATA = {"world.founders": "founders", "world.networks": "networks"}
 """Settings that a run sets by itself, with what mechanisms call them."""

@@ -15,7 +15,7 @@ from hedon.config.config import Config
 from hedon.config.field import Setting, leaves
 from hedon.config.load import load_config
 from hedon.config.problem import ConfigError, format_value
-from hedon.config.settings import PROVENANCE
+from hedon.config.schema.settings import PROVENANCE
 from hedon.error import EngineError
 from hedon.experiment.memory import memory_needed
 from hedon.experiment.simulation import Simulation

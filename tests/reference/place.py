@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from reference.draw import Draws, normals, one_of, uniform
 
-from hedon.config.arena import outer_count, walls
 from hedon.config.config import Config
+from hedon.config.schema.arena import outer_count, walls
 
 TRIES = 20_000
 """Draws for the place of one obstacle, one founder, or the first foods of a kind."""

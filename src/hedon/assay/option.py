@@ -7,8 +7,8 @@ from hedon.assay.contest import points_of
 from hedon.assay.landscape import NEUTRAL, AssayError, Spread
 from hedon.config.config import Config
 from hedon.config.dump import digest
-from hedon.config.evolution import GenomeConfig
 from hedon.config.layout import choose_species
+from hedon.config.schema.evolution import GenomeConfig
 from hedon.experiment.plan import RunPlan
 from hedon.jobs.requirement import RunRequirement
 from hedon.record.folder import CONFIG

@@ -9,9 +9,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hedon.config.settings import Settings
-from hedon.config.species import SpeciesConfig
-from hedon.config.store import ENERGY
+from hedon.config.schema.settings import Settings
+from hedon.config.schema.species import SpeciesConfig
+from hedon.config.schema.store import ENERGY
 from hedon.config.type import asked_for, chosen, diet, smelled
 
 

@@ -5,16 +5,16 @@ import re
 from itertools import pairwise
 from typing import Any
 
-from hedon.config.arena import ArenaConfig, is_inside
 from hedon.config.check_species import MAX_COVERAGE, NAME, check_species
 from hedon.config.field import inner_sections
-from hedon.config.food import FoodConfig
 from hedon.config.layout import store_columns
 from hedon.config.problem import Check, Problem, nearest, single
 from hedon.config.room import MAX_FOOD_KINDS
-from hedon.config.schedule import ScheduleConfig
-from hedon.config.settings import PROVENANCE, Settings
-from hedon.config.store import ENERGY
+from hedon.config.schema.arena import ArenaConfig, is_inside
+from hedon.config.schema.food import FoodConfig
+from hedon.config.schema.schedule import ScheduleConfig
+from hedon.config.schema.settings import PROVENANCE, Settings
+from hedon.config.schema.store import ENERGY
 
 MIN_WALL = 0.01
 """Length of the shortest wall whose direction float32 can still hold [u]."""

@@ -5,16 +5,16 @@ import re
 from collections.abc import Sequence
 
 from hedon.config.channel import QUERIED, SOURCES, called, known_channels, plain_channels
-from hedon.config.evolution import GATED
 from hedon.config.expression import NO_GENE, expressed, settable
 from hedon.config.field import leaves, value_at
 from hedon.config.layout import Gene, layout_of, rule_columns, store_columns
 from hedon.config.problem import Check, nearest, single
 from hedon.config.room import MAX_FORCE, MAX_GENES, MAX_OBSERVED, MAX_QUERIES, MAX_SPECIES, MAX_STORES, MAX_TOUCH_BITS
 from hedon.config.rule_path import RULE_PATTERN
-from hedon.config.settings import Settings
-from hedon.config.species import EVERYTHING, RULE_USES, SpeciesConfig
-from hedon.config.store import ENERGY
+from hedon.config.schema.evolution import GATED
+from hedon.config.schema.settings import Settings
+from hedon.config.schema.species import EVERYTHING, RULE_USES, SpeciesConfig
+from hedon.config.schema.store import ENERGY
 from hedon.config.type import SOLID, asked_for, chosen, diet, smelled
 from hedon.text import brief
 

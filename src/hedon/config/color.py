@@ -6,7 +6,7 @@ dark one (WCAG 2.2, 1.4.11). After Okabe & Ito (2008), "Color universal design",
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from hedon.config.settings import Settings
+from hedon.config.schema.settings import Settings
 
 SPECIES_COLORS = ("#b5508f", "#d55e00", "#2f7fc1", "#6b7884")
 FOOD_COLORS = ("#3f8f4f", "#b07d1a", "#8e44ad", "#2f7fc1", "#d55e00", "#0e8f8f", "#a35a2a", "#6b7884")

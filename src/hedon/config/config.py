@@ -7,8 +7,8 @@ from hedon.config.layer import EVERY, settle_genes, settle_stores
 from hedon.config.migrate import new_path
 from hedon.config.override import parse_path
 from hedon.config.problem import ConfigError, Problem, folded
-from hedon.config.settings import Settings
-from hedon.config.species import PER_SPECIES, default_path
+from hedon.config.schema.settings import Settings
+from hedon.config.schema.species import PER_SPECIES, default_path
 from hedon.config.validate import build
 from hedon.error import ArgumentError
 from hedon.text import brief

@@ -7,8 +7,8 @@ from typing import Any
 
 from hedon.config.field import Setting, inner_sections, leaves, sections, settings
 from hedon.config.problem import format_value
-from hedon.config.settings import PROVENANCE, Settings
-from hedon.config.species import ONLY, PER_SPECIES, default_path
+from hedon.config.schema.settings import PROVENANCE, Settings
+from hedon.config.schema.species import ONLY, PER_SPECIES, default_path
 from hedon.error import ArgumentError
 from hedon.text import brief
 

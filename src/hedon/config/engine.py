@@ -4,15 +4,15 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from hedon.config.arena import outer_count, walls
 from hedon.config.channel import Channel, season_place
 from hedon.config.config import Config, validated
-from hedon.config.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
 from hedon.config.expression import engine_name, gene_column, kind_of
 from hedon.config.field import engine_sections, engine_settings, leaves, settings
 from hedon.config.layout import Gene, layout_of, set_point_of
-from hedon.config.life import distance_sd
-from hedon.config.species import RULE_USES, SpeciesConfig
+from hedon.config.schema.arena import outer_count, walls
+from hedon.config.schema.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
+from hedon.config.schema.life import distance_sd
+from hedon.config.schema.species import RULE_USES, SpeciesConfig
 from hedon.config.type import asked_for, diet, types
 
 if TYPE_CHECKING:

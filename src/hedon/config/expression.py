@@ -6,11 +6,11 @@ from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from hedon.config.evolution import MAX_EXPONENT
 from hedon.config.field import Setting, engine_sections, engine_settings, settings, value_at
 from hedon.config.problem import SMALLEST, single
-from hedon.config.species import SpeciesConfig
-from hedon.config.store import ENERGY
+from hedon.config.schema.evolution import MAX_EXPONENT
+from hedon.config.schema.species import SpeciesConfig
+from hedon.config.schema.store import ENERGY
 
 if TYPE_CHECKING:
     import numpy as np

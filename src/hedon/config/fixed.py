@@ -1,6 +1,6 @@
 """Which settings a world keeps for as long as it lives: what the shapes of its arrays depend on, and its beginning."""
 
-from hedon.config.species import default_path
+from hedon.config.schema.species import default_path
 
 FIXED = (
     "arena.",

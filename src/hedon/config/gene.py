@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from hedon.config.layout import Gene, SpeciesLayout, layouts
-from hedon.config.settings import Settings
+from hedon.config.schema.settings import Settings
 
 
 def gene_of(config: Settings, column: str) -> Gene:

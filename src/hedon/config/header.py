@@ -12,10 +12,10 @@ from typing import Any, get_args
 
 from hedon.config import room
 from hedon.config.channel import LAST, SEVERAL, SOURCES
-from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES, GeneConfig, MutationConfig
 from hedon.config.field import Setting, engine_sections, engine_settings
-from hedon.config.settings import Settings
-from hedon.config.species import RULE_USES
+from hedon.config.schema.evolution import FAMILY_GENES, LEARNING_GENES, GeneConfig, MutationConfig
+from hedon.config.schema.settings import Settings
+from hedon.config.schema.species import RULE_USES
 
 _HEAD = """\
 /// Every setting that the engine gets, as `src/hedon/config` declares it, with its meaning, unit, range and source.

@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from hedon.config.evolution import OF_ALL_GENES, GeneConfig
 from hedon.config.expression import kind_of, settable
 from hedon.config.field import settings
 from hedon.config.problem import Problem, format_value, nearest
-from hedon.config.species import ONLY, PER_SPECIES
+from hedon.config.schema.evolution import OF_ALL_GENES, GeneConfig
+from hedon.config.schema.species import ONLY, PER_SPECIES
 
 Table = dict[str, Any]
 EVERY = "*"

@@ -6,7 +6,10 @@ The engine gets these layouts as data, the records carry them, and columns, labe
 from dataclasses import dataclass, replace
 
 from hedon.config.channel import Channel, called, known_channels, observed_channels, recorded_channels
-from hedon.config.evolution import (
+from hedon.config.expression import gene_column
+from hedon.config.field import value_at
+from hedon.config.problem import nearest
+from hedon.config.schema.evolution import (
     FAMILY_GENES,
     LEARNING_GENES,
     MAX_EXPONENT,
@@ -15,12 +18,9 @@ from hedon.config.evolution import (
     MutationConfig,
     RewardConfig,
 )
-from hedon.config.expression import gene_column
-from hedon.config.field import value_at
-from hedon.config.problem import nearest
-from hedon.config.settings import Settings
-from hedon.config.species import SpeciesConfig
-from hedon.config.store import ENERGY
+from hedon.config.schema.settings import Settings
+from hedon.config.schema.species import SpeciesConfig
+from hedon.config.schema.store import ENERGY
 from hedon.config.type import chosen, diet, smelled
 from hedon.error import ArgumentError
 from hedon.text import brief

@@ -24,8 +24,8 @@ from hedon.config.migrate import FIDELITY_NOW, clashes, is_earlier, migrate_text
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest
 from hedon.config.rule_path import with_absolute_rules
-from hedon.config.settings import PROVENANCE
-from hedon.config.species import ONLY
+from hedon.config.schema.settings import PROVENANCE
+from hedon.config.schema.species import ONLY
 from hedon.config.toml import parse_toml, read_toml, require_plain
 from hedon.config.validate import build
 from hedon.error import ArgumentError

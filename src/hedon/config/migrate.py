@@ -9,7 +9,7 @@ from typing import Any
 from hedon.config.field import value_at
 from hedon.config.layer import Table, has
 from hedon.config.problem import Problem, format_value
-from hedon.config.species import EVERYTHING, ONLY, PER_SPECIES
+from hedon.config.schema.species import EVERYTHING, ONLY, PER_SPECIES
 
 MOVED = {
     "body.food_radius": "world.food_radius",

@@ -8,8 +8,8 @@ from hedon.config.channel import SEVERAL, SOURCES, Source
 from hedon.config.field import sections, settings, type_name
 from hedon.config.load import FIDELITIES, PRESETS, describe_fidelity, describe_preset
 from hedon.config.problem import format_value
-from hedon.config.settings import Settings
-from hedon.config.species import SpeciesConfig
+from hedon.config.schema.settings import Settings
+from hedon.config.schema.species import SpeciesConfig
 
 _HEAD = """\
 # Settings

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from hedon.config.settings import Settings
-from hedon.config.species import RULE_USES
+from hedon.config.schema.settings import Settings
+from hedon.config.schema.species import RULE_USES
 
 RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
 """A rule: its file, its function and, once a run has it, the digest of the file."""

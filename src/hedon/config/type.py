@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from hedon.config.settings import Settings
-from hedon.config.species import EVERYTHING, SpeciesConfig
+from hedon.config.schema.settings import Settings
+from hedon.config.schema.species import EVERYTHING, SpeciesConfig
 
 WALL = "wall"
 """What senses call a wall."""

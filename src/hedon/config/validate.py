@@ -10,8 +10,8 @@ from typing import Any, TypeVar, cast, get_args, get_origin
 from hedon.config.check import contradictions
 from hedon.config.field import Setting, number_of, sections, settings
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest, single
-from hedon.config.settings import Settings
-from hedon.config.species import PER_SPECIES
+from hedon.config.schema.settings import Settings
+from hedon.config.schema.species import PER_SPECIES
 from hedon.config.toml import require_plain
 
 T = TypeVar("T")

@@ -8,12 +8,12 @@ from functools import partial
 import numpy as np
 
 from hedon.config import Config
-from hedon.config.body import MotorConfig
 from hedon.config.expression import of_mean_founders
-from hedon.config.food import FoodConfig
 from hedon.config.layout import choose_species
-from hedon.config.schedule import ScheduleConfig
-from hedon.config.species import SpeciesConfig
+from hedon.config.schema.body import MotorConfig
+from hedon.config.schema.food import FoodConfig
+from hedon.config.schema.schedule import ScheduleConfig
+from hedon.config.schema.species import SpeciesConfig
 from hedon.config.type import diet
 from hedon.demography.life import energy_hazard, expected_lifetime, reproduction_number
 from hedon.demography.placement import placement_success

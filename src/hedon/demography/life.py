@@ -2,7 +2,7 @@
 
 The functions take ages in steps and treat time as continuous, where the simulation draws once per step with
 the same chances; the two agree to a relative error of about the chance per step. Source: Kanagawa & Doya
-(2024); the hazard's age part is Gompertz's (1825). `hedon.config.life` has the forms of both chances.
+(2024); the hazard's age part is Gompertz's (1825). `hedon.config.schema.life` has the forms of both chances.
 """
 
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import roots_legendre
 
-from hedon.config.life import BIRTH_FORMS, HAZARD_FORMS, BirthConfig, HazardConfig
+from hedon.config.schema.life import BIRTH_FORMS, HAZARD_FORMS, BirthConfig, HazardConfig
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

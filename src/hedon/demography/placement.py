@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config import Config
-from hedon.config.arena import outline, walls
-from hedon.config.life import distance_sd
+from hedon.config.schema.arena import outline, walls
+from hedon.config.schema.life import distance_sd
 
 SCENES = 12
 """Random scenes per number of agents; each is tried with every agent as a parent."""

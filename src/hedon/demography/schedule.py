@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hedon.config.life import BirthConfig, HazardConfig
-from hedon.config.schedule import ScheduleConfig
-from hedon.config.species import SpeciesConfig
+from hedon.config.schema.life import BirthConfig, HazardConfig
+from hedon.config.schema.schedule import ScheduleConfig
+from hedon.config.schema.species import SpeciesConfig
 
 
 def factor_at(schedules: Mapping[str, ScheduleConfig], name: str, step: ArrayLike) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.config.body import MotorConfig
+from hedon.config.schema.body import MotorConfig
 from hedon.error import ArgumentError
 from hedon.text import brief
 

@@ -25,7 +25,7 @@ from hedon.config.config import Config
 from hedon.config.layout import EXTRA, layouts, rule_columns
 from hedon.config.problem import nearest
 from hedon.config.rule_path import RULE_PATTERN
-from hedon.config.species import RULE_USES
+from hedon.config.schema.species import RULE_USES
 from hedon.error import ArgumentError, HedonError
 from hedon.experiment.rule_text import cause, failure, refusal
 from hedon.record.folder import CONFIG, MANIFEST

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.config.arena import walls
+from hedon.config.schema.arena import walls
 from hedon.config.type import types
 from hedon.experiment.world import World
 from hedon.record.checkpoint import Sampled

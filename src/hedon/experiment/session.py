@@ -6,9 +6,9 @@ from typing import Protocol
 
 from hedon.config.config import Config
 from hedon.config.dump import SCHEMA, digest
-from hedon.config.evolution import GATED
 from hedon.config.layout import layouts
 from hedon.config.load import is_modified
+from hedon.config.schema.evolution import GATED
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.simulation import Simulation
 from hedon.record.digest import records_digest

@@ -13,8 +13,8 @@ from matplotlib.patches import Circle, Wedge
 from numpy.typing import NDArray
 
 from hedon.config import Config
-from hedon.config.food import FoodConfig
-from hedon.config.species import SpeciesConfig
+from hedon.config.schema.food import FoodConfig
+from hedon.config.schema.species import SpeciesConfig
 from hedon.figure.style import BLUE, INK, MUTED, VERMILION, new_figure, styled
 
 _BODY = "#dce8f2"

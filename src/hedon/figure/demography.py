@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from hedon.analysis.world.population import run_tail
-from hedon.config.species import SpeciesConfig
+from hedon.config.schema.species import SpeciesConfig
 from hedon.demography.life import expected_lifetime, reproduction_number
 from hedon.demography.schedule import birth_of, mean_hazard
 from hedon.figure.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled

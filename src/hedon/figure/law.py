@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hedon.config.life import HazardConfig
-from hedon.config.species import SpeciesConfig
+from hedon.config.schema.life import HazardConfig
+from hedon.config.schema.species import SpeciesConfig
 from hedon.demography.life import birth_rate, expected_lifetime, hazard, reproduction_number, survival
 from hedon.demography.schedule import birth_of
 from hedon.figure.demography import draw_reproduction

@@ -8,8 +8,8 @@ from collections import Counter
 from dataclasses import dataclass
 
 from hedon.config.config import Config
-from hedon.config.evolution import FAMILY_GENES, LEARNING_GENES
 from hedon.config.layout import EXTRA, SECOND_GENES, SET_POINT, layouts, store_columns
+from hedon.config.schema.evolution import FAMILY_GENES, LEARNING_GENES
 from hedon.config.type import diet
 from hedon.record.column import Column, Table
 from hedon.record.error import RecordError

@@ -17,8 +17,8 @@ from hedon.config.layer import EVERY
 from hedon.config.load import load_config
 from hedon.config.problem import ConfigError, Problem, format_value
 from hedon.config.rule_path import absolute_rule
-from hedon.config.settings import PROVENANCE
-from hedon.config.species import PER_SPECIES
+from hedon.config.schema.settings import PROVENANCE
+from hedon.config.schema.species import PER_SPECIES
 from hedon.config.validate import rebuild
 from hedon.error import HedonError
 from hedon.experiment.plan import RunPlan

@@ -9,10 +9,10 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.config.arena import walls
 from hedon.config.config import Config
 from hedon.config.expression import gene_column
 from hedon.config.load import parse_config
+from hedon.config.schema.arena import walls
 from hedon.record.reader import Run, open_run
 from hedon.record.snapshot import Snapshot, own_bodies
 from hedon.video.error import VideoError

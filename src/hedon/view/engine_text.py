@@ -1,8 +1,8 @@
 """A config as the text that the engine in a web page is made from; `engine/web/input.h` describes it."""
 
-from hedon.config.arena import outer_count, walls
 from hedon.config.config import Config
 from hedon.config.engine import engine_config, flat
+from hedon.config.schema.arena import outer_count, walls
 
 
 def engine_text(config: Config, seed: int) -> str:

@@ -6,12 +6,12 @@ description lists.
 
 from typing import Any
 
-from hedon.config.arena import walls
 from hedon.config.color import OBSTACLE_COLOR, meal_colors, species_color, weight_colors
 from hedon.config.config import Config
 from hedon.config.expression import gene_column, kind_of, limits_of
 from hedon.config.layout import Gene, SpeciesLayout, gene_columns, layouts
-from hedon.config.species import SpeciesConfig
+from hedon.config.schema.arena import walls
+from hedon.config.schema.species import SpeciesConfig
 from hedon.config.title import weight_title
 from hedon.config.type import diet, types
 

@@ -11,7 +11,7 @@ from hedon.config.field import Setting, leaves
 from hedon.config.fixed import fixed_path
 from hedon.config.load import PRESETS, describe_preset, is_modified, load_config
 from hedon.config.rule_path import rule_places
-from hedon.config.settings import PROVENANCE
+from hedon.config.schema.settings import PROVENANCE
 from hedon.view.engine_text import engine_text
 from hedon.view.layout import describe
 from hedon.view.page import ViewError

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hedon.config import load_config
-from hedon.config.arena import ArenaConfig, is_inside, outer_count, walls
+from hedon.config.schema.arena import ArenaConfig, is_inside, outer_count, walls
 
 DATA = Path(__file__).parents[2] / "data" / "walls.npz"
 

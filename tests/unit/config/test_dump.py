@@ -11,11 +11,11 @@ from hedon.config import FIDELITIES, PRESETS, ConfigError, diff, digest, dump_to
 from hedon.config import field as doc
 from hedon.config.config import Config
 from hedon.config.dump import flatten, section_paths
-from hedon.config.evolution import GeneConfig, MutationConfig, PayConfig
 from hedon.config.load import parse_config
-from hedon.config.schedule import ScheduleConfig
-from hedon.config.settings import PROVENANCE
-from hedon.config.species import SpeciesConfig
+from hedon.config.schema.evolution import GeneConfig, MutationConfig, PayConfig
+from hedon.config.schema.schedule import ScheduleConfig
+from hedon.config.schema.settings import PROVENANCE
+from hedon.config.schema.species import SpeciesConfig
 
 
 def reload(config: Config, folder: Path) -> Config:

@@ -13,7 +13,7 @@ from hedon.config.config import Config
 from hedon.config.engine import engine_paths
 from hedon.config.field import Setting, leaves
 from hedon.config.header import header
-from hedon.config.life import distance_sd
+from hedon.config.schema.life import distance_sd
 
 ENGINE = Path(__file__).parents[3] / "engine"
 CONFIG = load_config(

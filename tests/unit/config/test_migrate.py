@@ -16,13 +16,13 @@ from project_files import ROOT
 from hedon.check.run import check_run
 from hedon.config import ConfigError, diff, digest, dump_toml, load_config
 from hedon.config.dump import flatten
-from hedon.config.evolution import GeneConfig, PayConfig
 from hedon.config.field import sections, settings, value_at
 from hedon.config.load import migrated_file, parse_config
 from hedon.config.migrate import MOVED, STORES, VALUES, migrate_text, renamed
-from hedon.config.species import SpeciesConfig
-from hedon.config.store import StoreConfig
-from hedon.config.world import WorldConfig
+from hedon.config.schema.evolution import GeneConfig, PayConfig
+from hedon.config.schema.species import SpeciesConfig
+from hedon.config.schema.store import StoreConfig
+from hedon.config.schema.world import WorldConfig
 from hedon.experiment.resume import resume
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run

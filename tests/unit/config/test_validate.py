@@ -4,10 +4,10 @@ from typing import Any
 import pytest
 
 from hedon.config import Config, ConfigError, diff, load_config, validated
-from hedon.config.evolution import MutationConfig
 from hedon.config.layer import settle_species
-from hedon.config.species import SpeciesConfig
-from hedon.config.store import EnergyConfig
+from hedon.config.schema.evolution import MutationConfig
+from hedon.config.schema.species import SpeciesConfig
+from hedon.config.schema.store import EnergyConfig
 from hedon.config.validate import build
 
 

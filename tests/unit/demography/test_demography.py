@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from hedon.config.life import BirthConfig, HazardConfig
+from hedon.config.schema.life import BirthConfig, HazardConfig
 from hedon.demography import life
 
 HAZARD, BIRTH = HazardConfig(), BirthConfig()

@@ -6,9 +6,9 @@ from matplotlib.path import Path as Polygon
 from two_stores import FED
 
 from hedon.config import Config, load_config
-from hedon.config.arena import outline
-from hedon.config.body import MotorConfig
-from hedon.config.schedule import ScheduleConfig
+from hedon.config.schema.arena import outline
+from hedon.config.schema.body import MotorConfig
+from hedon.config.schema.schedule import ScheduleConfig
 from hedon.demography.forecast import forecast, fresh_force, setting_warnings
 from hedon.demography.life import birth_rate, expected_lifetime, hazard
 from hedon.demography.placement import is_free, placement_success

@@ -6,7 +6,7 @@ from hedon.config import FIDELITIES, Config, diff, load_config
 from hedon.config.dump import flatten
 from hedon.config.field import sections
 from hedon.config.problem import format_value
-from hedon.config.species import PER_SPECIES
+from hedon.config.schema.species import PER_SPECIES
 from hedon.report.table import cells
 from hedon.study.item import ItemInputs
 from hedon_studies.kanagawa_doya_2024.parameter import CONCERNS, PARAMETERS

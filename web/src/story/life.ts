@@ -23,7 +23,7 @@ interface Ended {
   children: number;
 }
 
-/** Chances per step: see `hedon.config.life`. */
+/** Chances per step: see `hedon.config.schema.life`. */
 export function hazard(stage: Stage, energy: number, age: number, kappa = stage.value("hazard.kappa")): number {
   const of = (name: string) => stage.value(`hazard.${name}`);
   const odds = of("alpha_energy") * Math.exp(-of("beta_energy") * energy);

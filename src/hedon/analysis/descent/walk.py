@@ -24,7 +24,7 @@ _PIECE = 250  # walks at a time: 20 MB for 20,000 ancestors
 
 @dataclass(frozen=True)
 class MutationLaw:
-    """How a gene begins and changes: see `hedon.config.evolution.GenomeConfig`.
+    """How a gene begins and changes: see `hedon.config.schema.evolution.GenomeConfig`.
 
     Attributes:
         mean, sd: of the founders' normal distribution.

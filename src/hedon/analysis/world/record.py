@@ -13,7 +13,7 @@ from hedon.config import Config, flatten, load_config
 from hedon.config.gene import gene_of
 from hedon.config.layout import Gene
 from hedon.config.problem import format_value
-from hedon.config.species import ONLY, SpeciesConfig
+from hedon.config.schema.species import ONLY, SpeciesConfig
 from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
 from hedon.text import brief

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from hedon.config.arena import ArenaConfig
 from hedon.config.field import CODE, EITHER, OURS, PAPER, section, setting
 from hedon.config.room import MAX_FACTOR
-from hedon.config.schedule import ScheduleConfig
+from hedon.config.schema.arena import ArenaConfig
+from hedon.config.schema.schedule import ScheduleConfig
 
 if TYPE_CHECKING:
     import numpy as np

@@ -3,15 +3,15 @@
 import re
 from dataclasses import dataclass, fields
 
-from hedon.config.body import BodyConfig, MotorConfig, SensorConfig
-from hedon.config.evolution import GenomeConfig, RewardConfig
 from hedon.config.field import OURS, section, setting
-from hedon.config.learning import LearningConfig
-from hedon.config.life import BirthConfig, HazardConfig
-from hedon.config.neighbor import NeighborConfig
-from hedon.config.population import PopulationConfig
 from hedon.config.room import MAX_QUERIES, MAX_STORES
-from hedon.config.store import ENERGY, EnergyConfig, StoreConfig
+from hedon.config.schema.body import BodyConfig, MotorConfig, SensorConfig
+from hedon.config.schema.evolution import GenomeConfig, RewardConfig
+from hedon.config.schema.learning import LearningConfig
+from hedon.config.schema.life import BirthConfig, HazardConfig
+from hedon.config.schema.neighbor import NeighborConfig
+from hedon.config.schema.population import PopulationConfig
+from hedon.config.schema.store import ENERGY, EnergyConfig, StoreConfig
 
 ONLY = "agent"
 """The name of the species of a file without `[species]`."""

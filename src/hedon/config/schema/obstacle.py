@@ -6,7 +6,7 @@ from typing import Literal
 
 from hedon.config.field import OURS, section, setting
 from hedon.config.room import MAX_OBSTACLES
-from hedon.config.schedule import ScheduleConfig
+from hedon.config.schema.schedule import ScheduleConfig
 
 SEQUEL = OURS + "; the code of the sequel"
 

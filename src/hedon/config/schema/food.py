@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from hedon.config.evolution import GeneConfig
 from hedon.config.field import CODE, EITHER, OURS, PAPER, section, setting
 from hedon.config.room import MAX_FACTOR, MAX_STORES
-from hedon.config.schedule import ScheduleConfig
+from hedon.config.schema.evolution import GeneConfig
+from hedon.config.schema.schedule import ScheduleConfig
 
 
 @dataclass(frozen=True, slots=True)

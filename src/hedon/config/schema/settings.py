@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 
-from hedon.config.arena import ArenaConfig
 from hedon.config.field import OURS, section, setting
-from hedon.config.food import FoodConfig
-from hedon.config.obstacle import ObstacleConfig
-from hedon.config.physics import PhysicsConfig
 from hedon.config.room import MAX_FOOD_KINDS, MAX_SPECIES
-from hedon.config.species import ONLY, SpeciesConfig
-from hedon.config.world import WorldConfig
+from hedon.config.schema.arena import ArenaConfig
+from hedon.config.schema.food import FoodConfig
+from hedon.config.schema.obstacle import ObstacleConfig
+from hedon.config.schema.physics import PhysicsConfig
+from hedon.config.schema.species import ONLY, SpeciesConfig
+from hedon.config.schema.world import WorldConfig
 
 PROVENANCE = ("name", "preset", "fidelity")
 """Fields that say where a config came from; they change no result."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from hedon.config.evolution import GeneConfig
 from hedon.config.field import CODE, EITHER, OURS, PAPER, section, setting
+from hedon.config.schema.evolution import GeneConfig
 
 ENERGY = "energy"
 """The store of every species, with a section and a ledger of its own."""
