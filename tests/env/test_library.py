@@ -200,6 +200,25 @@ def test_a_world_of_pettingzoo_can_be_copied(slots):
     assert world.simulation.worlds[0].digest() == other.simulation.worlds[0].digest()
 
 
+def test_bounds_hold_what_genes_and_rounding_make():
+    """A capacity that a gene sets, and quotients that 32 bits round up."""
+    settings = [
+        "genome.set.energy.capacity.initial_sd=0.3",
+        "energy.initial=30",
+        "energy.capacity=31",
+        "sensor.observes.one=0.06",
+    ]
+    settings += ["food.normal.gives.energy=40", "population.initial_count=60"]
+    worlds = make("baseline", 2, overrides=settings, render_mode=None)
+    columns, most = worlds.groups["agent"].columns, 0.0
+    for _ in range(60):
+        worlds.step(worlds.actions)
+        seen = worlds.observations[worlds.alive]
+        assert all(row in worlds.single_observation_space for row in seen)
+        most = max(most, float(seen[:, columns.index("energy")].max()))
+    assert most > 31
+
+
 def test_spaces_are_those_of_what_is_seen_and_done():
     """Every observation is within its bounds, and those that are finite are reached."""
     both = make("predator", 2, render_mode=None)

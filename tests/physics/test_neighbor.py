@@ -147,6 +147,16 @@ def test_a_body_that_a_jam_throws_far_fills_no_list():
         throw("sequential")
 
 
+@pytest.mark.parametrize("solver", ["sequential", "jacobi"])
+def test_a_body_may_cross_the_arena_in_a_step(solver):
+    scene = make_scene([[20.0, 100.0], [400.0, 300.0]], solver=solver, max_speed=1e4)
+    scene.step()
+    scene.array("velocity_x")[0] = 900.0
+    scene.step()
+    assert scene.array("x")[0] > 300.0
+    assert scene.counters()["repeats"] > 8
+
+
 def test_a_full_list_is_a_fault_and_leaves_the_bodies():
     scene = crowd(1, BODIES, 0, pair_limit=20)
     before = read(scene)

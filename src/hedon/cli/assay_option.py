@@ -37,7 +37,7 @@ class AssayOptions:
 
     seeds: Seeds = "1-10"
     steps: Annotated[int, typer.Option(help="Steps of each world.", min=1, max=MAX_STEPS)] = STEPS
-    fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or text.")] = None
+    fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or as_printed.")] = None
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
     ] = None

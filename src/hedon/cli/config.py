@@ -16,7 +16,7 @@ app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Show, compa
 Source = Annotated[str, typer.Argument(help="A preset, or a file that ends with .toml.", show_default=False)]
 Fidelity = Annotated[
     str | None,
-    typer.Option("--fidelity", "-f", help="corrected, released or text; replaces the one in the file."),
+    typer.Option("--fidelity", "-f", help="corrected, released or as_printed; replaces the one in the file."),
 ]
 Overrides = Annotated[
     list[str] | None,

@@ -48,7 +48,7 @@ def run(
     out: Annotated[Path | None, typer.Option(help="Folder of the run; by default a new one under runs/.")] = None,
     frames: Annotated[int, typer.Option(help="Save all positions every N steps; 0 for never.", min=0)] = 0,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
-    fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or text.")] = None,
+    fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or as_printed.")] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
     ] = None,

@@ -43,7 +43,7 @@ Steps = Annotated[
     int | None,
     typer.Option(help="Steps of each world; by default, and for pictures, the item's own.", min=1, max=MAX_STEPS),
 ]
-FidelityName = Annotated[str, typer.Option("--fidelity", help="corrected, released or text.")]
+FidelityName = Annotated[str, typer.Option("--fidelity", help="corrected, released or as_printed.")]
 Quick = Annotated[
     bool, typer.Option("--quick", help="One seed and 2,048 steps, to see that everything works; it tells nothing.")
 ]

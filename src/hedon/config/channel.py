@@ -59,7 +59,7 @@ SEVERAL: dict[str, tuple[tuple[str, ...], str]] = {
 _SHARE, _CIRCLE, _COUNT = (0.0, 1.0), (-1.0, 1.0), (0.0, math.inf)
 SOURCES = {
     "velocity": Source("velocity_{}", "velocity along {}", "u/s", ("x", "y")),
-    "angle": Source("heading", "heading, 0 along y, not wrapped", "rad", limits=(-2 * math.pi, 2 * math.pi)),
+    "angle": Source("heading", "heading, 0 along y", "rad", limits=(-2 * math.pi, 2 * math.pi)),
     "heading": Source(
         "heading_{}", "{} of the heading at the start of the step", of=("sine", "cosine"), limits=_CIRCLE
     ),

@@ -182,7 +182,7 @@ def _for_rules(check: Check, config: Settings, species: SpeciesConfig, path: str
         check.need(finds, f"{path}neighbor.{name}.of", "must name a species or a kind of food")
         if not ruled and not read & {SOURCES[each].name.format(name) for each in QUERIED}:
             rule = f"nothing reads its channels, such as {name}_count: sensor.observes, reward.pay and reward.gate do"
-            check.add(f"{path}neighbor.{name}", f"{rule}, and {rules}")
+            check.add(f"{path}neighbor.{name}", f"{rule}, and {rules}; neighbor.{name} = false leaves it out")
     if len(species.neighbor) > MAX_QUERIES:
         check.add(f"{path}neighbor", f"there must be at most {MAX_QUERIES} queries, not {len(species.neighbor)}")
 

@@ -117,6 +117,8 @@ def parse_config(text: str, origin: str) -> Config:
 
 def _current(tables: Table, origin: str) -> Table:
     """The tables of a file, where it is a complete one of an earlier version as this version would write it."""
+    if tables.get("complete") and tables.get("fidelity") in FIDELITY_NOW:
+        tables = tables | {"fidelity": FIDELITY_NOW[tables["fidelity"]]}
     if not is_earlier(tables):
         return tables
     old = migrated(tables)

@@ -76,17 +76,26 @@ _LAWS = ("initial_mean_food", "initial_mean_action", "initial_sd")
 def clashes(tables: Table) -> Iterator[Problem]:
     """Yields each setting whose place now has another value: its own, or that of another species."""
     owners = {"": tables} | {f"species.{name}.": own for name, own in _tables(tables.get("species")).items()}
+    moved: dict[str, str] = {}
+    for place, own in owners.items():
+        found = {old: new for old, new in MOVED.items() if has(own, old.split("."))}
+        moved |= {place + old: new if new.startswith("world.") else place + new for old, new in found.items()}
+        rewards = _tables(own.get("reward"))
+        for sense in SENSES:
+            for name in _tables(rewards.get(sense)):
+                moved[f"{place}reward.{sense}.{name}"] = f"{place}reward.pay.{sense}_{name}"
+        gate = GATES.get(own["reward"]["family"]) if has(own, ["reward", "family"]) else None
+        if gate and own["reward"].get("gate", gate) != gate:
+            meant = f'means reward.gate = "{gate}"; it has another one'
+            yield Problem(f"{place}reward.family", meant, format_value(own["reward"]["family"]))
+    for kind, food in _tables(tables.get("food")).items():
+        moved |= {f"food.{kind}.{name}": f"food.{kind}.gives.{name}" for name in GIVEN if name in food}
     told: dict[str, Any] = {}
-    for old, new in MOVED.items():
-        for place, own in owners.items():
-            if has(own, old.split(".")):
-                now = new if new.startswith("world.") else place + new
-                value = value_at(own, old)
-                there = value_at(tables, now) if has(tables, now.split(".")) else told.setdefault(now, value)
-                if there != value:
-                    yield Problem(
-                        place + old, f"is called {now} now, which is {format_value(there)}", format_value(value)
-                    )
+    for old, new in moved.items():
+        value = value_at(tables, old)
+        there = value_at(tables, new) if has(tables, new.split(".")) else told.setdefault(new, value)
+        if there != value:
+            yield Problem(old, f"is called {new} now, which is {format_value(there)}", format_value(value))
 
 
 def renamed(tables: Table, hint: str = "") -> Iterator[Problem]:

@@ -8,7 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
-from hedon.config.layout import layouts
+from hedon.config.expression import expressed, gene_column
+from hedon.config.field import value_at
+from hedon.config.layout import SpeciesLayout, layouts
+from hedon.config.schema.species import SpeciesConfig
+from hedon.config.schema.store import ENERGY
 from hedon.env.group import ACTIONS, Group
 from hedon.error import HedonError
 
@@ -16,24 +20,33 @@ from hedon.error import HedonError
 def bounds(config: Config, name: str) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """The least and the greatest that each entry of an observation can be, (entries,) each.
 
-    Velocities have no bounds. What an agent holds of a store is at most its capacity.
+    What a channel has for limits is divided as the engine divides it, in 32 bits. What an agent holds of a store is at
+    most its capacity, the largest that its gene allows where one sets it.
 
     Args:
         config: With the species.
         name: Of the species.
     """
     species, layout = config.species[name], layouts(config)[name]
-    stores = list(species.stores.values())
+    capacities = [_capacity(species, layout, store) for store in species.stores]
     low = [-1.0] * (len(layout.sees) * species.sensor.ray_count)
     low += [0.0] * (len(layout.touches) * species.sensor.touch_sectors)
     high = [1.0] * len(low)
     for channel in layout.observed:
         least, most = channel.limits
         if channel.source == "store":
-            most = stores[channel.index].capacity
-        low.append(least / channel.scale)
-        high.append(most / channel.scale)
+            most = capacities[channel.index]
+        low.append(float(np.float32(least) / np.float32(channel.scale)))
+        high.append(float(np.float32(most) / np.float32(channel.scale)))
     return np.array(low, np.float32), np.array(high, np.float32)
+
+
+def _capacity(species: SpeciesConfig, layout: SpeciesLayout, store: str) -> float:
+    path = f"{store if store == ENERGY else f'store.{store}'}.capacity"
+    genes = {gene.name: gene.mutation.limit for gene in layout.genes}
+    if path not in species.genome.set:
+        return value_at(species, path)
+    return expressed(species, path, genes[gene_column(path)])
 
 
 class Spaces:

@@ -3,7 +3,7 @@
 _BEGIN: dict[str, str] = {
     "name": "what the config is called: the preset, or its file without the ending; or null",
     "preset": "name of the preset, or null",
-    "fidelity": "corrected, released or text, or null",
+    "fidelity": "corrected, released or as_printed, or null",
     "modified": "whether any setting differs from the preset with the fidelity; null where the manifest does not say",
     "hedon_version": "version that made the run",
     "backend": "what computed: an instruction set, or a device",

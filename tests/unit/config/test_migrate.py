@@ -150,6 +150,15 @@ def test_tables_of_one_line_and_empty_ones_are_rewritten(write: Write, text: str
             '[birth]\norder = "after_deaths"\n[species.a.birth]\norder = "before_deaths"\n[species.b]',
             r'species\.a\.birth\.order = "before_deaths": is called world\.birth_order now, which is "after_deaths"',
         ),
+        (
+            "[food.normal]\nenergy = 2.0\ngives.energy = 3.0",
+            r"food\.normal\.energy = 2\.0: is called food\.normal\.gives\.energy",
+        ),
+        (
+            "[reward]\nsee.agent.coef = 0.3\npay.see_agent.coef = 0.5",
+            r"reward\.see\.agent = .*: is called reward\.pay\.see_agent now",
+        ),
+        ('[reward]\nfamily = "by_age"\ngate = "energy"', r'reward\.family = "by_age": means reward\.gate = "age"'),
         ("hello = 3", "hello: unknown name"),
         ('[factor]\n"birth.delay" = [1.0]', "factor: unknown name"),
     ],
