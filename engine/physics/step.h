@@ -143,8 +143,8 @@ HEDON_FN BatchReport largest_report(const PhysicsScratch& scratch, int32_t batch
   return all;
 }
 
-/// Most doublings of the skin within a step; after that, the step fails. A jam under the solver jacobi once threw a body
-/// 330 u far in a step, which 8 did not hold; 12 hold 4,000 u with the usual skin.
+/// Most doublings of the skin within a step; after that, the step fails. A jam under the solver jacobi once threw a
+/// body 330 u far in a step, which 8 did not hold; 12 hold 4,000 u with the usual skin.
 inline constexpr int MAX_REPEATS = 12;
 
 /// One step of the physics. All members of the group call it with the same arguments.
