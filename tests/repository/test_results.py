@@ -214,6 +214,14 @@ def test_fear_by_the_sequels_senses():
     assert (
         f"from 0 to 1 they have {above} %, from \N{MINUS SIGN}1 to 0 {below} %, below \N{MINUS SIGN}1 {low} %" in shown
     )
+    alone = founders.select("seed", "w_see_predator", relative[1])
+    for half, label in (
+        (pl.col("w_see_predator") >= 0, "above 0: descendants"),
+        (pl.col("w_see_predator") < 0, "below 0:"),
+    ):
+        groups = [rows for _, rows in alone.filter(half).group_by("seed", maintain_order=True)]
+        within = np.array([np.polyfit(rows["w_see_predator"], rows["descendants"], 1)[0] for rows in groups])
+        assert f"{label} {span(within)[:-1].replace(' (', ', ')}" in shown
 
 
 @pytest.mark.parametrize("outcome", ["offspring", "lifespan", "food", "descendants"])
