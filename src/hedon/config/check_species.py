@@ -53,7 +53,7 @@ def check_species(check: Check) -> None:
         _life(check, config, species, path)
         _lists(check, config, species, path)
         _stores(check, config, species, path)
-        _for_rules(check, config, species, path)
+        _read(check, config, species, path)
         before = len(check.problems)
         _channels(check, config, species, path)
         if len(check.problems) == before and not check.has(f"{path}genome."):  # else there is no layout
@@ -163,8 +163,8 @@ def _known(check: Check, path: str, names: Sequence[str], known: Sequence[str]) 
         check.need(name in known or name == EVERYTHING, path, rule, name, nearest(name, known))
 
 
-def _for_rules(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
-    """What something must read: genes that only rules read, and queries about neighbors."""
+def _read(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
+    """Something reads the genes for rules, and the queries about neighbors."""
     ruled = any(getattr(species, use).rule for use in RULE_USES)
     rules = " or ".join(f"{use}.rule" for use in RULE_USES)
     for section, table in (("genome.extra", species.genome.extra), ("neighbor", species.neighbor)):

@@ -3,7 +3,7 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from hedon.config.layer import EVERY, settle_genes, settle_stores
+from hedon.config.layer import EVERY, settle_genes, settle_stores_and_queries
 from hedon.config.migrate import new_path
 from hedon.config.override import parse_path
 from hedon.config.problem import ConfigError, Problem, folded
@@ -49,7 +49,7 @@ class Config(Settings):
             if not _put(tables, [*root, *(names[2:] if kinds else names)], value):
                 raise ConfigError(self.name, [Problem(path, "there is no such setting")])
         settle_genes(tables)
-        problems = list(settle_stores(tables))
+        problems = list(settle_stores_and_queries(tables))
         if problems:
             raise ConfigError(self.name, folded(problems, tuple(self.species)))
         return build(Config, tables, self.name)

@@ -151,7 +151,7 @@ def _laws(table: Table, path: str = "") -> Iterator[tuple[str, Any]]:
         yield from [(place, value)] if is_law else _laws(value, f"{place}.")
 
 
-def settle_stores(tables: Table) -> Iterator[Problem]:
+def settle_stores_and_queries(tables: Table) -> Iterator[Problem]:
     """Removes the stores and queries that are false from each species, in place; yields stores without a capacity."""
     species = tables.get("species")
     for name, own in species.items() if isinstance(species, dict) else ():

@@ -16,7 +16,7 @@ from hedon.config.layer import (
     settle_food,
     settle_genes,
     settle_species,
-    settle_stores,
+    settle_stores_and_queries,
     stack,
     with_defaults,
 )
@@ -122,7 +122,7 @@ def _current(tables: Table, origin: str) -> Table:
     if not is_earlier(tables):
         return tables
     old = migrated(tables)
-    problems = [*settle_food(old), *settle_species(old, []), *settle_stores(old)]
+    problems = [*settle_food(old), *settle_species(old, []), *settle_stores_and_queries(old)]
     if problems:
         raise ConfigError(origin, problems)
     return {"complete": True, "schema": SCHEMA} | asdict(build(Config, old, origin))
@@ -256,7 +256,7 @@ def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     merged = stack([*below, *above])
     mistyped = _mistyped_species(stack([*below, above[0]]), above[1:])
     problems = [*mistyped, *_schema_problems(merged, complete), *settle_food(merged), *settle_species(merged, above)]
-    problems += settle_stores(merged)
+    problems += settle_stores_and_queries(merged)
     settle_genes(merged)
     if problems:
         raise ConfigError(origin, folded(problems, _species_of(merged)))

@@ -73,29 +73,38 @@ _LAWS = ("initial_mean_food", "initial_mean_action", "initial_sd")
 """Settings of `genome` that stood for the law of every gene before 0.4."""
 
 
+def _owners(tables: Table) -> dict[str, Table]:
+    """What has settings of a species, by how paths in it begin: the file itself, and each species."""
+    return {"": tables} | {f"species.{name}.": own for name, own in _tables(tables.get("species")).items()}
+
+
+def _moves(tables: Table) -> Iterator[tuple[str, str]]:
+    """Each path of the tables that is another one now, and that one."""
+    for place, own in _owners(tables).items():
+        for old, new in MOVED.items():
+            if has(own, old.split(".")):
+                yield place + old, new if new.startswith("world.") else place + new
+        for sense in SENSES:
+            for name in _tables(_tables(own.get("reward")).get(sense)):
+                yield f"{place}reward.{sense}.{name}", f"{place}reward.pay.{sense}_{name}"
+    for kind, food in _tables(tables.get("food")).items():
+        yield from ((f"food.{kind}.{name}", f"food.{kind}.gives.{name}") for name in GIVEN if name in food)
+
+
 def clashes(tables: Table) -> Iterator[Problem]:
     """Yields each setting whose place now has another value: its own, or that of another species."""
-    owners = {"": tables} | {f"species.{name}.": own for name, own in _tables(tables.get("species")).items()}
-    moved: dict[str, str] = {}
-    for place, own in owners.items():
-        found = {old: new for old, new in MOVED.items() if has(own, old.split("."))}
-        moved |= {place + old: new if new.startswith("world.") else place + new for old, new in found.items()}
-        rewards = _tables(own.get("reward"))
-        for sense in SENSES:
-            for name in _tables(rewards.get(sense)):
-                moved[f"{place}reward.{sense}.{name}"] = f"{place}reward.pay.{sense}_{name}"
-        gate = GATES.get(own["reward"]["family"]) if has(own, ["reward", "family"]) else None
-        if gate and own["reward"].get("gate", gate) != gate:
-            meant = f'means reward.gate = "{gate}"; it has another one'
-            yield Problem(f"{place}reward.family", meant, format_value(own["reward"]["family"]))
-    for kind, food in _tables(tables.get("food")).items():
-        moved |= {f"food.{kind}.{name}": f"food.{kind}.gives.{name}" for name in GIVEN if name in food}
     told: dict[str, Any] = {}
-    for old, new in moved.items():
+    for old, new in _moves(tables):
         value = value_at(tables, old)
         there = value_at(tables, new) if has(tables, new.split(".")) else told.setdefault(new, value)
         if there != value:
             yield Problem(old, f"is called {new} now, which is {format_value(there)}", format_value(value))
+    for place, own in _owners(tables).items():
+        family = own["reward"]["family"] if has(own, ["reward", "family"]) else None
+        gate = GATES.get(family) if isinstance(family, str) else None
+        if gate and own["reward"].get("gate", gate) != gate:
+            meant = f'means reward.gate = "{gate}"; it has another one'
+            yield Problem(f"{place}reward.family", meant, format_value(family))
 
 
 def renamed(tables: Table, hint: str = "") -> Iterator[Problem]:
@@ -105,26 +114,15 @@ def renamed(tables: Table, hint: str = "") -> Iterator[Problem]:
         tables: of a layer.
         hint: what helps, in brackets, at the end of each message.
     """
-    species = tables.get("species")
-    owners = {"": tables} | {f"species.{name}.": own for name, own in _tables(species).items()}
-    for place, own in owners.items():
-        for old, new in MOVED.items():
-            if has(own, old.split(".")):
-                now = new if new.startswith("world.") else place + new
-                yield Problem(place + old, f"is called {now} now{hint}")
+    for old, new in _moves(tables):
+        yield Problem(old, f"is called {new} now{hint}")
+    for place, own in _owners(tables).items():
         for path, names in VALUES.items():
             section, name = path.split(".")
             value = own[section][name] if has(own, [section, name]) else None
             if isinstance(value, str) and value in names:
                 more = f', with reward.gate = "{GATES[value]}"' if value in GATES else ""
                 yield Problem(place + path, f'is called "{names[value]}" now{more}{hint}', f'"{value}"')
-        for sense in SENSES:
-            for name in _tables(_tables(own.get("reward")).get(sense)):
-                yield Problem(f"{place}reward.{sense}.{name}", f"is called {place}reward.pay.{sense}_{name} now{hint}")
-    for kind, food in _tables(tables.get("food")).items():
-        for name in GIVEN:
-            if name in food:
-                yield Problem(f"food.{kind}.{name}", f"is called food.{kind}.gives.{name} now{hint}")
 
 
 def new_path(path: str) -> str | None:
