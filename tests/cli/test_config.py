@@ -96,6 +96,9 @@ def test_a_check_reads_rules_as_a_run_does(tmp_path: Path) -> None:
     assert near.returncode == 2
     assert near.stderr.endswith("rule.py:payed: the file has no function payed; did you mean paid?\n")
     assert "its file fails" in check("raise SystemExit(3)").stderr
+    unknown = check("def paid(agent):\n    return agent.nothing\n")
+    assert (unknown.returncode, unknown.stdout) == (2, "")
+    assert "nothing" in unknown.stderr
     missing = check(None)
     assert (missing.returncode, missing.stdout) == (2, "")
     assert "cannot read" in missing.stderr

@@ -96,6 +96,16 @@ def test_mechanisms_have_the_same_bits(emulated: str, name: str):
     require_equal(one, other)
 
 
+def test_queries_of_two_species_have_the_same_bits(emulated: str):
+    settings = ("neighbor.foe={of=['predator'], range=90}", "neighbor.any={of=['normal', '*']}")
+    settings += ("species.predator.neighbor.foe=false", "species.prey.reward.pay.foe_distance.coef=0.01")
+    settings += ("reward.pay.any_meals={}", "reward.pay.any_kin={}", "sensor.observes.any_bearing=3")
+    one, other = pair(emulated, *SHORT, *settings, preset="predator")
+    one.run(20)
+    other.run(20)
+    require_equal(one, other)
+
+
 def test_threads_that_run_at_the_same_time_have_the_same_bits(emulated: str, monkeypatch: pytest.MonkeyPatch):
     """A barrier that is missing shows where fibers, which take turns, would hide it."""
     monkeypatch.setenv(EMULATION_VARIABLE, str(build(32, system_threads=True)))

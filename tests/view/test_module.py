@@ -64,6 +64,18 @@ def test_a_window_has_the_bits_of_the_native_engine(module, kernel, preset, wind
 
 
 @needs_node
+@pytest.mark.parametrize(("module", "kernel"), MODULES)
+def test_queries_of_two_species_have_the_bits_of_the_native_engine(module, kernel, tmp_path):
+    """Agents observe the nearest, are paid by kin and by what those near eat, and weigh it by who is near."""
+    settings = ("neighbor.foe={of=['predator'], range=90}", "neighbor.any={of=['normal', '*']}")
+    settings += ("species.predator.neighbor.foe=false", "species.prey.reward.family=around")
+    settings += ("species.prey.reward.gate=foe_count", "reward.pay.any_meals={}", "reward.pay.any_kin={}")
+    settings += ("sensor.observes.any_bearing=3", "sensor.observes.any_distance=50", "world.rollout_steps=256")
+    found = run_in_node(module, engine_text(load_config("predator", overrides=settings), 1), tmp_path, 262)
+    assert found["digest"] == native_digest("predator", kernel, 262, *settings)
+
+
+@needs_node
 @pytest.mark.parametrize("threads", [1, 2, 3])
 @pytest.mark.parametrize(("module", "kernel"), MODULES)
 def test_threads_change_no_bit(module, kernel, threads, tmp_path):

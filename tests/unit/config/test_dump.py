@@ -1,7 +1,7 @@
 import dataclasses
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from hypothesis import given, reject, settings
@@ -16,6 +16,7 @@ from hedon.config.schema.evolution import GeneConfig, MutationConfig, PayConfig
 from hedon.config.schema.schedule import ScheduleConfig
 from hedon.config.schema.settings import PROVENANCE
 from hedon.config.schema.species import SpeciesConfig
+from hedon.error import ArgumentError
 
 
 def reload(config: Config, folder: Path) -> Config:
@@ -216,3 +217,11 @@ def test_diff_names_what_is_absent() -> None:
     assert rows[0] == ("food", ("normal", "poor"), ("normal",))
     assert ("food.normal.capacity", 90, 100) in rows
     assert ("food.poor.gives.energy", 0.2, None) in rows
+
+
+def test_what_is_no_config_and_no_path_is_refused():
+    config = load_config("baseline")
+    with pytest.raises(ArgumentError, match=r"b: must be a Config, as `load_config` gives it, not 3"):
+        diff(config, cast(Any, 3))
+    with pytest.raises(ArgumentError, match=r"path: must be that of a setting, such as energy\.initial, not 3"):
+        config.with_(cast(Any, 3), 4)
