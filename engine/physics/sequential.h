@@ -5,9 +5,9 @@
 /// of the pass before limits friction. Invariant: every pair of bodies keeps its total momentum, up to float rounding.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 
+#include "base/device.h"
 #include "physics/detect.h"
 #include "physics/solver.h"
 #include "physics/state.h"
@@ -38,7 +38,7 @@ HEDON_FN void give_colors(const PairList& pairs, const PhysicsScratch& scratch, 
     uint32_t& a = colors[pairs.first[active[i]]];
     uint32_t& b = colors[pairs.second[active[i]]];
     // The last color takes all remaining contacts; they may share bodies, which only costs time.
-    const int taken = std::countr_zero(~(a | b) | 0x80000000u);
+    const int taken = lowest_bit(~(a | b) | 0x80000000u);
     a |= 1u << taken;
     b |= 1u << taken;
     color[i] = start[taken]++ * COLORS + taken;

@@ -28,6 +28,10 @@ FORBIDDEN_IN_STEP = re.compile(
     r"#include <(vector|string|map|set|functional|memory|iostream|mutex|thread|chrono|random|algorithm)>"
     r"|\b(new|malloc|calloc|virtual|throw|try|dynamic_cast)\b[^\w]"
 )
+# nvcc knows none of GCC's builtins behind them: it took `std::countr_zero` for the constant 32, without a word.
+UNKNOWN_TO_NVCC = re.compile(
+    r"std::(bit_\w+|byteswap|count[lr]_(zero|one)|has_single_bit|popcount|rot[lr])\b|__builtin_(clz|ctz|ffs|parity|popcount)"
+)
 
 
 def code_without_comments(path: Path) -> str:
@@ -77,3 +81,13 @@ def test_test_files_have_names_of_their_own():
     """Pytest imports them by name alone, and stops where two share one."""
     names = [path.name for path in project_files(".py") if path.is_relative_to(ROOT / "tests")]
     assert len(names) == len(set(names))
+
+
+def test_kernels_count_bits_by_functions_that_nvcc_knows():
+    wrappers = {"device.h", "thread.h"}  # they call CUDA's own functions where it compiles
+    of_processors = {"avx2.h", "avx512.h", "neon.h", "portable.h"}
+    for part in (*STEP_PATH, "base", "lanes", "cuda"):
+        for path in (ROOT / "engine" / part).glob("*.h"):
+            found = UNKNOWN_TO_NVCC.search(code_without_comments(path))
+            allowed = path.name in wrappers | of_processors
+            assert found is None or allowed, f"{path.relative_to(ROOT)}: {found.group()}"
