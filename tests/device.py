@@ -60,7 +60,7 @@ class Trial:
 
     def call(self, *command: str, most: float = 120.0, environment: dict[str, str] | None = None) -> dict[str, Any]:
         """What a command prints as JSON in its last line, or what went wrong."""
-        seconds = self.left(most)
+        seconds = self.left(most)  # as long as it may take, unless the trial ends before
         if seconds < 1:
             return {"skipped": "no time was left"}
         try:
@@ -73,7 +73,8 @@ class Trial:
                 env=os.environ | (environment or {}),
             )
         except subprocess.TimeoutExpired:
-            return {"failed": f"it took more than {seconds:.0f} s"}
+            word = "failed" if seconds == most else "skipped"
+            return {word: f"it took more than {seconds:.0f} s"}
         lines = done.stdout.strip().splitlines()
         parsed = json.loads(lines[-1]) if lines and lines[-1].startswith("{") else {}
         if done.returncode == 0:
@@ -210,7 +211,7 @@ def times(trial: Trial, program: str, folder: Path) -> dict[str, Any]:
     full = world("baseline", folder, {**FULL, **(FEW if trial.emulated else {})})
     acting = world("baseline", folder, {**FULL, "learning.update_epochs": 1, **(FEW if trial.emulated else {})})
     numbers = (1, 2) if trial.emulated else (1, 16, 64, 128, 256, 512)
-    seconds = "0.1" if trial.emulated else "4"
+    seconds = "0.1" if trial.emulated else f"{min(4.0, trial.left() / 100):.2f}"
     found: dict[str, Any] = {}
     for n in numbers:
         room, need = free_bytes(trial), n * found["1"].get("bytes_per_world", 0) if found else 0
@@ -236,7 +237,7 @@ def commands(trial: Trial, folder: Path) -> dict[str, Any]:
         import cuda_emulation
 
         environment["HEDON_CUDA_EMULATION"] = str(cuda_emulation.build())
-    else:
+    elif not build.beside_engine().exists():
         build.build(build.beside_engine())
     hedon = [sys.executable, "-c", "from hedon.cli.start import main; main()"]
     settings = [f"--set={path}={value}" for path, value in (FEW if trial.emulated else FULL).items()]
@@ -265,13 +266,15 @@ def commands(trial: Trial, folder: Path) -> dict[str, Any]:
         if (place / "manifest.json").exists()
     ]
     found["kernels"] = [session["backend"] for session in digests[0]["sessions"]] if digests else []
+    if any("skipped" in found[name] for name in ("resume", "check", "whole")):
+        return found
     same = len(digests) == 2 and all(digests[0][key] == digests[1][key] for key in ("world_digests", "records_digest"))
     return found if same else {**found, "failed": "the interrupted run has other digests than the whole one"}
 
 
-def all_parts(trial: Trial, folder: Path) -> None:
+def all_parts(trial: Trial, folder: Path, built: Path | None) -> None:
     """Everything, the most important first."""
-    program = str(trial.part("program", lambda: str(build_program(trial.emulated))))
+    program = str(trial.part("program", lambda: str(built or build_program(trial.emulated))))
     trial.part("device", lambda: trial.call(program, "describe"))
     steps = (
         {"one_window": SMALL["world.rollout_steps"] + 2}
@@ -296,20 +299,36 @@ def all_parts(trial: Trial, folder: Path) -> None:
     trial.part("commands", lambda: commands(trial, folder))
 
 
+def built_alone(emulated: bool) -> int:
+    """Builds the native program, says where it is, and returns the exit status."""
+    try:
+        print(f"device: {build_program(emulated)}")
+    except build.BuildError as error:
+        print(f"device: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
 def main() -> int:
     """Does all parts that there is time for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--out", type=Path, default=PLACE / "device.json", help="where the JSON goes")
     parser.add_argument("--seconds", type=float, default=570.0, help="after which nothing new begins")
     parser.add_argument("--emulate", action="store_true", help="the emulated device, to try this script")
+    parser.add_argument(
+        "--build", action="store_true", help="build the native program and nothing else: no device is needed"
+    )
+    parser.add_argument("--program", type=Path, help="the native program that --build has made, on another machine too")
     given = parser.parse_args()
+    if given.build:
+        return built_alone(given.emulate)
     if not given.emulate and not has_device():
         print("device: this machine has no CUDA device, or its driver is missing: nothing was tried", file=sys.stderr)
         return 2
     trial = Trial(given.out, given.seconds, given.emulate)
     with tempfile.TemporaryDirectory() as folder:
         try:
-            all_parts(trial, Path(folder))
+            all_parts(trial, Path(folder), given.program)
         except build.BuildError as error:
             print(f"device: {error}", file=sys.stderr)
             return 2

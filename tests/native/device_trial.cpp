@@ -4,6 +4,7 @@
 ///     device_trial same STEPS WORLDS FILE          bits against the processor's, after steps in two pieces
 ///     device_trial repeat STEPS WORLDS FILE        bits of the first world again, and among WORLDS of them
 ///     device_trial resume STEPS FILE               from the device to the processor and back, by checkpoints
+///     device_trial first STEPS FILE                the first step after which bits differ, and which arrays do
 ///     device_trial time SECONDS WORLDS FILE        whole windows, for about so long
 ///
 /// Each prints one object of JSON. Exit status 1 where bits differ or a world has a fault, 2 for what cannot be tried.
@@ -40,6 +41,84 @@ bool sound(Simulation& simulation, int index, uint64_t digest) {
   return simulation.numbers(index).fault().status == Status::ok && simulation.digest(index) == digest;
 }
 
+/// A fault as text; "" for none.
+std::string fault_text(Simulation& simulation, int index) {
+  const Fault& fault = simulation.numbers(index).fault();
+  if (fault.status == Status::ok) return "";
+  char text[200];
+  snprintf(text, sizeof text, "%s at step %lld, agent %d, value %g", STATUS_TEXT[static_cast<int>(fault.status)].name,
+           static_cast<long long>(fault.step), fault.agent_id, fault.value);
+  return text;
+}
+
+/// Bytes as digits, the last one first, as in a number.
+std::string hex(const char* bytes, size_t count) {
+  constexpr size_t MOST = 8;
+  std::string text;
+  for (size_t i = std::min(count, MOST); i-- > 0;) {
+    char digits[3];
+    snprintf(digits, sizeof digits, "%02x", static_cast<unsigned>(static_cast<unsigned char>(bytes[i])));
+    text += digits;
+  }
+  return text;
+}
+
+/// Arrays of the state that differ, each with its first byte that does. Some are not valid where nobody lives.
+std::string differing_arrays(const WorldState& here, const WorldState& there) {
+  std::vector<std::pair<const char*, size_t>> arrays;
+  for_each_array(here, "", [&]<class T>(const std::string&, const Array<T>& array) {
+    arrays.emplace_back(reinterpret_cast<const char*>(array.data), static_cast<size_t>(array.count) * sizeof(T));
+  });
+  std::string text;
+  size_t next = 0;
+  for_each_array(there, "", [&]<class T>(const std::string& name, const Array<T>& array) {
+    const auto [expected, bytes] = arrays[next++];
+    const char* const found = reinterpret_cast<const char*>(array.data);
+    size_t at = 0, differ = 0;
+    for (size_t i = bytes; i-- > 0;) {
+      if (expected[i] == found[i]) continue;
+      at = i;
+      ++differ;
+    }
+    if (differ == 0) return;
+    const size_t item = at / sizeof(T) * sizeof(T);
+    text += (text.empty() ? "" : ", ") + name + "[" + std::to_string(at / sizeof(T)) + "] " +
+            hex(expected + item, sizeof(T)) + " " + hex(found + item, sizeof(T)) + ", " + std::to_string(differ) +
+            " of " + std::to_string(bytes) + " bytes";
+  });
+  return text;
+}
+
+/// Steps the same world here and there, and looks after every `stride` steps.
+/// stride   [step]
+int report_first(int64_t steps, const WorldInput& input) {
+  int64_t from = 0;
+  std::string differ;
+  for (int64_t stride = 16;; stride = 1) {
+    const auto here = make_worlds(input, 1, false), there = on_device(input, 1);
+    here->run(from);
+    advance(*there, from);
+    int64_t step = from;
+    while (step < steps && sound(*there, 0, here->digest(0))) {
+      here->run(stride);
+      advance(*there, stride);
+      step += stride;
+    }
+    if (sound(*there, 0, here->digest(0))) break;
+    differ = differing_arrays(here->complete(0).state, there->complete(0).state);
+    if (stride > 1 && step >= stride) {
+      from = step - stride;
+      continue;
+    }
+    printf("{\"first_step\": %lld, \"alive\": [%d, %d], \"fault\": \"%s\", \"differ\": \"%s\"}\n",
+           static_cast<long long>(step), here->numbers(0).head().living_count, there->numbers(0).head().living_count,
+           fault_text(*there, 0).c_str(), differ.c_str());
+    return 1;
+  }
+  printf("{\"steps\": %lld, \"equal\": true}\n", static_cast<long long>(steps));
+  return 0;
+}
+
 int report_same(int64_t steps, int64_t worlds, const WorldInput& input) {
   const auto here = make_worlds(input, worlds, false), there = on_device(input, worlds);
   Clock::time_point begun = Clock::now();
@@ -52,10 +131,10 @@ int report_same(int64_t steps, int64_t worlds, const WorldInput& input) {
   int equal = 0;
   for (int i = 0; i < worlds; ++i) equal += sound(*there, i, here->digest(i));
   printf(
-      "{\"worlds\": %lld, \"steps\": %lld, \"equal\": %d, \"alive\": %d, \"device_seconds\": %.3f, "
-      "\"processor_seconds\": %.3f}\n",
+      "{\"worlds\": %lld, \"steps\": %lld, \"equal\": %d, \"alive\": %d, \"fault\": \"%s\", "
+      "\"device_seconds\": %.3f, \"processor_seconds\": %.3f}\n",
       static_cast<long long>(worlds), static_cast<long long>(steps), equal, there->numbers(0).head().living_count,
-      device, processor);
+      fault_text(*there, 0).c_str(), device, processor);
   return equal == worlds ? 0 : 1;
 }
 
@@ -137,15 +216,17 @@ int report(const std::string& what, const std::vector<std::string>& given) {
     return 0;
   }
   const bool three = given.size() == 3;
-  if (!three && !(what == "resume" && given.size() == 2)) {
-    fprintf(stderr,
-            "device_trial describe | same|repeat STEPS WORLDS FILE | resume STEPS FILE | time SECONDS WORLDS FILE\n");
+  if (!three && !((what == "resume" || what == "first") && given.size() == 2)) {
+    fprintf(
+        stderr,
+        "device_trial describe | same|repeat STEPS WORLDS FILE | resume|first STEPS FILE | time SECONDS WORLDS FILE\n");
     return 2;
   }
   const int64_t worlds = three ? atoll(given[1].c_str()) : 1;
   const WorldInput input = read_world(given.back(), worlds);
   if (what == "same") return report_same(atoll(given[0].c_str()), worlds, input);
   if (what == "repeat") return report_repeat(atoll(given[0].c_str()), worlds, input);
+  if (what == "first") return report_first(atoll(given[0].c_str()), input);
   if (what == "resume") return report_resume(atoll(given[0].c_str()), input);
   return report_time(atof(given[0].c_str()), worlds, input);
 }
