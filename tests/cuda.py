@@ -24,12 +24,11 @@ BUILT = ROOT / "build" / "cuda"
 TABLE = ROOT / "tests" / "data" / "cuda_kernels.json"
 COSTS = ROOT / "tests" / "data" / "cuda_cost.json"
 COST_SLACK = 0.15
-THREADS = 256
+THREADS = 512
 # Of one multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, technical specifications.
 REGISTERS, RESIDENT_THREADS, SHARED_BYTES, SHARED_RESERVED = 65536, 2048, 228 * 1024, 1024
 # Shared memory that is asked for at a launch: `StepWorlds::FLOATS`; an update of 95 inputs (`learning_layout.h`).
-SHARED = {"StepWorlds": 16 * 2 * 64 * 4, "LearnWorlds": 223_808}
-MAY_SPILL = {"StepWorlds"}
+SHARED = {"StepWorlds": 32 * 2 * 64 * 4, "LearnWorlds": 223_808}
 SLACK = 8  # registers: another version of the compiler may take a few more or fewer
 
 
@@ -63,8 +62,8 @@ def problems(found: dict[str, dict[str, int]], kept: dict[str, dict[str, int]]) 
     out = [f"{name}: it is in the table alone, or in the source alone" for name in sorted(found.keys() ^ kept.keys())]
     for name in sorted(found.keys() & kept.keys()):
         now, then = found[name], kept[name]
-        if now["spills"] > (then["spills"] if name in MAY_SPILL else 0):
-            out.append(f"{name}: {now['spills']} bytes of registers are spilled")
+        if now["spills"] > then["spills"]:
+            out.append(f"{name}: {now['spills']} bytes of registers are spilled, and the table has {then['spills']}")
         if abs(now["registers"] - then["registers"]) > SLACK or now["blocks"] != then["blocks"]:
             out.append(f"{name}: {now}, and the table has {then}: call `python tests/cuda.py --write` if that is right")
     return out

@@ -28,7 +28,7 @@ OPTIONS = (
     "-shared",
 )
 THREADS = 64
-"""Threads of an emulated block: few, since each barrier goes through all of them. A device has 256."""
+"""Threads of an emulated block: few, since each barrier goes through all of them. A device has 512."""
 
 
 def build(threads: int = THREADS, *, system_threads: bool = False) -> Path:

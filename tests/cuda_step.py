@@ -1,6 +1,6 @@
 """The longest way of a step through a block, counted in accesses of memory: `python tests/cuda_step.py [--write]`.
 
-No device is needed: `native/step_accesses.cpp` counts in the emulation, with a device's 256 threads. A thread of a
+No device is needed: `native/step_accesses.cpp` counts in the emulation, with a device's 512 threads. A thread of a
 device waits for most of its accesses, so the way says how long a step takes at least, once one knows how long an access
 takes; and it says which part to shorten first.
 """

@@ -2,7 +2,7 @@
 
 In the thread sanitizer's build, every thread of a block is a thread of the system. So it sees what a device might do:
 two threads that use the same number with no barrier between them, and the same of the teams of the processor's threads,
-with which the kernels are compared. In the other build, a block has a device's 256
+with which the kernels are compared. In the other build, a block has a device's 512
 threads, and the address sanitizer knows each one's stack.
 """
 

@@ -56,13 +56,13 @@ HEDON_FN void square_gradient_by_block(const Block& block, const BlockUpdate& on
   each_tile(block, [&](int from, int unit) {
     float* const to = on.gradient + on.shape.w2() + from * HIDDEN + unit;
     Totals total;
-    for (int i = 0; i < 4; ++i) total.set_row(i, read_four(to + i * HIDDEN));
+    for (int i = 0; i < TILE_ROWS; ++i) total.set_row(i, read_four(to + i * HIDDEN));
     for (int s = 0; s < count; ++s) {
-      const Four left = read_four(on.hidden1 + s * HIDDEN_STRIDE + from);
+      const Column left = read_column(on.hidden1 + s * HIDDEN_STRIDE + from);
       const Four right = read_four(on.hidden2 + s * HIDDEN_STRIDE + unit);
-      for (int i = 0; i < 4; ++i) total.add(i, left.v[i], right);
+      for (int i = 0; i < TILE_ROWS; ++i) total.add(i, left.v[i], right);
     }
-    for (int i = 0; i < 4; ++i) write_four(to + i * HIDDEN, total.row(i));
+    for (int i = 0; i < TILE_ROWS; ++i) write_four(to + i * HIDDEN, total.row(i));
   });
   block.each(HIDDEN, [&](int unit) {
     float* const to = on.gradient + on.shape.b2() + unit;
@@ -77,7 +77,7 @@ HEDON_FN void hidden_backward_by_block(const Block& block, const BlockUpdate& on
   each_tile(block, [&](int sample, int unit) {
     Totals total{};
     multiply_rows(on.hidden2 + sample * HIDDEN_STRIDE, on.w2_transposed + unit, total);
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < TILE_ROWS; ++i) {
       float* const to = on.hidden1 + (sample + i) * HIDDEN_STRIDE + unit;
       Four h = read_four(to);
       for (int j = 0; j < 4; ++j) h.v[j] = total.v[i][j] * (1.0f - h.v[j] * h.v[j]);

@@ -30,9 +30,9 @@ HEDON_FN void first_layer_by_block(const Block& block, const BlockUpdate& on, co
   const ObservationShape& sizes = on.shape.observation;
   const float* const w1 = on.params() + on.shape.w1();
   each_tile(block, [&](int sample, int unit) {
-    const PackedObservation* seen[4];
+    const PackedObservation* seen[TILE_ROWS];
     Totals total;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < TILE_ROWS; ++i) {
       seen[i] = observation_at(sizes, observation, on.index[sample + i]);
       total.set_row(i, read_four(on.folded_bias + unit));
     }
@@ -40,7 +40,7 @@ HEDON_FN void first_layer_by_block(const Block& block, const BlockUpdate& on, co
     for (int32_t r = 0; r < sizes.rays; ++r) {
       int type = seen[0]->ray_type[r];
       Four weights = row(sizes.ray_entry(r, type));
-      for (int i = 0; i < 4; ++i) {
+      for (int i = 0; i < TILE_ROWS; ++i) {
         // Neighboring samples mostly agree, so their weights are mostly read once.
         if (seen[i]->ray_type[r] != type) {
           type = seen[i]->ray_type[r];
@@ -50,7 +50,7 @@ HEDON_FN void first_layer_by_block(const Block& block, const BlockUpdate& on, co
       }
     }
     const int32_t touch = sizes.ray_entries(), dense = touch + sizes.touches;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < TILE_ROWS; ++i) {
       const auto add_touched = [&](uint64_t touched, int32_t first) {
         for (uint64_t bits = touched; bits != 0; bits &= bits - 1) total.add(i, 1.0f, row(first + lowest_bit(bits)));
       };
@@ -59,10 +59,10 @@ HEDON_FN void first_layer_by_block(const Block& block, const BlockUpdate& on, co
     }
     for (int32_t d = 0; d < sizes.dense; ++d) {
       const Four weights = row(dense + d);
-      for (int i = 0; i < 4; ++i)
+      for (int i = 0; i < TILE_ROWS; ++i)
         total.add(i, d < MAX_DENSE ? seen[i]->dense[d] : extra_of(*seen[i]).dense[d - MAX_DENSE], weights);
     }
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < TILE_ROWS; ++i) {
       Four out;
       for (int j = 0; j < 4; ++j) out.v[j] = tanh_lanes(Lanes{total.v[i][j]}).v;
       write_four(on.hidden1 + (sample + i) * HIDDEN_STRIDE + unit, out);
@@ -74,9 +74,9 @@ HEDON_FN void first_layer_by_block(const Block& block, const BlockUpdate& on, co
 HEDON_FN void second_layer_by_block(const Block& block, const BlockUpdate& on) {
   each_tile(block, [&](int sample, int unit) {
     Totals total;
-    for (int i = 0; i < 4; ++i) total.set_row(i, read_four(on.params() + on.shape.b2() + unit));
+    for (int i = 0; i < TILE_ROWS; ++i) total.set_row(i, read_four(on.params() + on.shape.b2() + unit));
     multiply_rows(on.hidden1 + sample * HIDDEN_STRIDE, on.params() + on.shape.w2() + unit, total);
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < TILE_ROWS; ++i) {
       Four out;
       for (int j = 0; j < 4; ++j) out.v[j] = tanh_lanes(Lanes{total.v[i][j]}).v;
       write_four(on.hidden2 + (sample + i) * HIDDEN_STRIDE + unit, out);

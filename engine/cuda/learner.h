@@ -1,4 +1,4 @@
-/// A learner in the shared memory of its block, and the tiles of 4 by 4 numbers that its threads compute in registers.
+/// A learner in the shared memory of its block, and the tiles of 2 by 4 numbers that its threads compute in registers.
 #pragma once
 
 #include "cuda/block.h"
@@ -37,9 +37,18 @@ struct BlockUpdate {
 
 static_assert(sizeof(BlockSamples) == SAMPLE_ARRAYS * BLOCK * sizeof(float));
 
-/// A tile: 4 samples or rows by 4 units.
+/// Samples or rows of a tile: so few that each thread of a block has one.
+inline constexpr int TILE_ROWS = 2;
+
+/// As many neighboring floats as a tile has rows.
+struct __attribute__((may_alias, aligned(TILE_ROWS * 4))) Column {
+  float v[TILE_ROWS];
+};
+HEDON_INLINE Column read_column(const float* from) { return *reinterpret_cast<const Column*>(from); }
+
+/// A tile: some samples or rows by 4 units.
 struct Totals {
-  float v[4][4];
+  float v[TILE_ROWS][4];
 
   HEDON_INLINE void add(int row, float x, const Four& by) {
     for (int j = 0; j < 4; ++j) v[row][j] = __builtin_fmaf(x, by.v[j], v[row][j]);
@@ -53,17 +62,17 @@ struct Totals {
 /// Calls body(row, column) for each tile of a (64, 64) matrix.
 template <class Body>
 HEDON_INLINE void each_tile(const Block& block, Body&& body) {
-  block.each(256, [&](int tile) { body(tile / 16 * 4, tile % 16 * 4); });
+  block.each(BLOCK / TILE_ROWS * (HIDDEN / 4), [&](int tile) { body(tile / 16 * TILE_ROWS, tile % 16 * 4); });
 }
 
 /// A tile of A·B: a has its rows HIDDEN_STRIDE apart, b its rows 64; both are 64 wide. Adds to `total`, in order.
 HEDON_INLINE void multiply_rows(const float* a, const float* b, Totals& total) {
   for (int k = 0; k < HIDDEN; k += 4) {
-    Four left[4];
-    for (int i = 0; i < 4; ++i) left[i] = read_four(a + i * HIDDEN_STRIDE + k);
+    Four left[TILE_ROWS];
+    for (int i = 0; i < TILE_ROWS; ++i) left[i] = read_four(a + i * HIDDEN_STRIDE + k);
     for (int q = 0; q < 4; ++q) {
       const Four right = read_four(b + (k + q) * HIDDEN);
-      for (int i = 0; i < 4; ++i) total.add(i, left[i].v[q], right);
+      for (int i = 0; i < TILE_ROWS; ++i) total.add(i, left[i].v[q], right);
     }
   }
 }

@@ -1,7 +1,7 @@
 /// One learner's update by one block: all minibatches with parameters, gradient and moments in shared memory.
 ///
 /// Every sum runs in the order of the CPU's kernels (`kernel/ppo_gradient.h`), so the bits are those of AVX2 and
-/// AVX-512, whatever the number of threads. A thread computes tiles of 4 samples by 4 units.
+/// AVX-512, whatever the number of threads. A thread computes tiles of 2 samples by 4 units.
 #pragma once
 
 #include "cuda/backward.h"

@@ -13,7 +13,7 @@ namespace hedon {
 
 /// Threads of a block, also of the emulated ones unless a test asks for fewer.
 #if !defined(HEDON_BLOCK_THREADS)
-#define HEDON_BLOCK_THREADS 256
+#define HEDON_BLOCK_THREADS 512
 #endif
 inline constexpr int32_t BLOCK_THREADS = HEDON_BLOCK_THREADS;
 static_assert(BLOCK_THREADS % 32 == 0 && BLOCK_THREADS / TILE <= DEVICE_MEMBERS);

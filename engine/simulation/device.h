@@ -15,7 +15,7 @@
 namespace hedon {
 
 /// Rooms that a world on a device has for lists of circles: one for each tile of a block.
-inline constexpr int DEVICE_MEMBERS = 16;
+inline constexpr int DEVICE_MEMBERS = 32;
 
 /// What the kernels of a device get; all pointers are the device's.
 struct DeviceWorlds {
