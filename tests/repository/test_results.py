@@ -2,115 +2,21 @@
 
 import json
 import re
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import polars as pl
 import pytest
+from result_page import p_of, p_text, page, small, span, table, text
 from scipy import stats
 
 from hedon.statistic import holm
 from hedon.statistic.extinction import extinct_share
 from hedon_studies.fear.program import PITFALL_COLUMNS, PITFALL_RUN, PREDATOR_RUN, WINDOW
 
-RESULTS = Path(__file__).parents[2] / "docs" / "results"
-CONTESTS = (1, 2, 3, 5, 8)
-ARMS = {
-    "ten times the rate": "rate-10",
-    "ten times the bonus": "entropy-10",
-    "no bonus": "entropy-0",
-    "gamma 0.99": "gamma-99",
-}
-"""Ways of learning, as the page names them, and the folder of each."""
 FOUNDERS = {"predator": ("w_normal", "w_action", "w_see_prey", "w_see_predator")}
 FOUNDERS["pitfall"] = ("w_normal", "w_action", "w_see_agent", "w_see_obstacle")
 SURVIVAL_STEPS = 256_000
 HUNTED = ("predator", "predator-small-mouth", "predator-large-mouth", "predator-less-food")
-
-
-def page(name: str) -> str:
-    return (RESULTS / name).read_text(encoding="utf-8")
-
-
-def table(path: str) -> pl.DataFrame:
-    return pl.read_parquet(RESULTS / path) if path.endswith(".parquet") else pl.read_csv(RESULTS / path)
-
-
-def text(value: float, digits: int, sign: bool = False) -> str:
-    """A number as pages show it: with a true minus, and nothing before a rounded 0."""
-    shown = f"{value:{'+' if sign else ''}.{digits}f}"
-    shown = shown.lstrip("-+") if float(shown) == 0 else shown
-    return shown.replace("-", "\N{MINUS SIGN}")
-
-
-def span(values: np.ndarray, digits: int = 3, sign: bool = True) -> str:
-    """Mean and 95 % interval by Student's t."""
-    bounds = stats.ttest_1samp(values, 0).confidence_interval()
-    low, high = text(bounds.low, digits), text(bounds.high, digits)
-    return f"{text(values.mean(), digits, sign)} ({low} … {high})"
-
-
-def p_of(values: np.ndarray) -> float:
-    found: Any = stats.ttest_1samp(values, 0)
-    return float(found.pvalue)
-
-
-def p_text(p: float) -> str:
-    """A p as pages show it: two digits, below 0.01 one more, and four below 0.001."""
-    return f"{p:.4f}" if p < 0.001 else f"{p:.3f}" if p < 0.0095 else f"{p:.2f}"
-
-
-def shares(name: str) -> np.ndarray:
-    """Of each world of a contest, the share of the first group at the end, less one half."""
-    worlds = table(f"compete/{name}/tables/contest_world.csv")
-    first, second = (worlds[column].to_numpy() for column in worlds.columns[1:3])
-    return first / (first + second) - 0.5
-
-
-def coefficient(name: str) -> tuple[float, str]:
-    row = table(f"compete/{name}/tables/contest.csv").row(0, named=True)
-    return row["value"], f"({text(row['low'], 3)} … {text(row['high'], 3)})"
-
-
-def test_contests_of_24_worlds():
-    each = [shares(f"food-{food}-24") for food in CONTESTS]
-    p = [p_of(values) for values in each]
-    shown = page("start.md")
-    for food, values, own, corrected in zip(CONTESTS, each, p, holm(p), strict=True):
-        s, bounds = coefficient(f"food-{food}-24")
-        row = re.search(rf"^\| food {food} .*$", shown, re.MULTILINE)
-        assert row is not None
-        assert f"| {text(s, 3)} {bounds} | {span(values, 3, sign=False)} | {(values > 0).sum()}" in row[0]
-        number = re.findall(r"[\d.]+", row[0].split("|")[-3] + row[0].split("|")[-2])
-        assert [float(each) for each in number] == [
-            pytest.approx(value, abs=0.0051 if value > 0.01 else 0.0005) for value in (own, corrected)
-        ]
-
-
-def test_contests_by_other_ways_of_learning():
-    """Each row of the page: the share by itself, then less that of the baseline's learning in pairs of equal seeds."""
-    each = {arm: shares(f"food-5-{name}") for arm, name in ARMS.items()}
-    pairs = {arm: values - shares("food-5-24") for arm, values in each.items()}
-    alone, paired = ([p_of(values) for values in found.values()] for found in (each, pairs))
-    shown = page("start.md")
-    for arm, p, corrected, q, q_corrected in zip(ARMS, alone, holm(alone), paired, holm(paired), strict=True):
-        s, bounds = coefficient(f"food-5-{ARMS[arm]}")
-        above = (each[arm] > 0).sum()
-        row = re.search(rf"^\| \[{re.escape(arm)}\].*$", shown, re.MULTILINE)
-        assert row is not None
-        assert f"| {text(s, 3)} {bounds} | {span(each[arm])} | {above} | {p_text(p)} | {p_text(corrected)} |" in row[0]
-        assert row[0].endswith(f"| {span(pairs[arm])} | {p_text(q)} | {p_text(q_corrected)} |")
-    rate, above = each["ten times the rate"], (pairs["ten times the rate"] > 0).sum()
-    assert (
-        f"in {(rate > 0).sum()} of 24 worlds, and its share is larger than by the\n  baseline's rate in {above}."
-        in shown
-    )
-    own, corrected = p_text(alone[0]), p_text(holm(alone)[0])
-    assert f"(24 worlds, p {own} by t, {corrected} by Holm)" in page("README.md")
-    mean, bounds = span(rate, sign=False).split(" ", 1)
-    told = f"{mean} above one half {bounds[:-1].replace(' …', ' to')}, p {own}, by Holm over the four {corrected})"
-    assert told in page("../paper/paper.md").replace("\n", " ")
 
 
 def test_evolution_from_above():
@@ -136,19 +42,6 @@ def test_evolution_from_above():
     assert held["worlds"] == 18
     assert f"held at {optimum} ({low} … {high}), p {p_text(held['p'])}" in text_of
     assert f"held at {optimum} ({low} to {high}, p {p_text(held['p'])})" in page("../paper/paper.md").replace("\n", " ")
-
-
-def small(p: float) -> str:
-    """A p, of which more than four digits are not told."""
-    return "< 0.0001" if p < 0.0001 else p_text(p)
-
-
-def test_contests_of_eight_worlds_are_told_by_worlds_first():
-    shown = page("start.md")
-    for name in ("food", "paper"):
-        values = shares(name)
-        signed_rank: Any = stats.wilcoxon(values)
-        assert f"{p_of(values):.3f} by t, {signed_rank.pvalue:.3f} by Wilcoxon" in shown
 
 
 def slopes(path: str, weights: tuple[str, ...], outcome: str) -> dict[int, np.ndarray]:

@@ -1,0 +1,80 @@
+"""The numbers that pages tell of contests are those of the tables beside them."""
+
+import re
+from typing import Any
+
+import pytest
+from result_page import coefficient, p_of, p_text, page, shares, small, span, text
+from scipy import stats
+
+from hedon.statistic import holm
+
+CONTESTS = (1, 2, 3, 5, 8)
+ARMS = {
+    "ten times the rate": "rate-10",
+    "ten times the bonus": "entropy-10",
+    "no bonus": "entropy-0",
+    "gamma 0.99": "gamma-99",
+}
+"""Ways of learning, as the page names them, and the folder of each."""
+
+
+def test_contests_of_24_worlds():
+    each = [shares(f"food-{food}-24") for food in CONTESTS]
+    p = [p_of(values) for values in each]
+    shown = page("start.md")
+    for food, values, own, corrected in zip(CONTESTS, each, p, holm(p), strict=True):
+        s, bounds = coefficient(f"food-{food}-24")
+        row = re.search(rf"^\| food {food} .*$", shown, re.MULTILINE)
+        assert row is not None
+        assert f"| {text(s, 3)} {bounds} | {span(values, 3, sign=False)} | {(values > 0).sum()}" in row[0]
+        number = re.findall(r"[\d.]+", row[0].split("|")[-3] + row[0].split("|")[-2])
+        assert [float(each) for each in number] == [
+            pytest.approx(value, abs=0.0051 if value > 0.01 else 0.0005) for value in (own, corrected)
+        ]
+
+
+def test_contests_by_other_ways_of_learning():
+    """Each row of the page: the share by itself, then less that of the baseline's learning in pairs of equal seeds."""
+    each = {arm: shares(f"food-5-{name}") for arm, name in ARMS.items()}
+    pairs = {arm: values - shares("food-5-24") for arm, values in each.items()}
+    alone, paired = ([p_of(values) for values in found.values()] for found in (each, pairs))
+    shown = page("start.md")
+    for arm, p, corrected, q, q_corrected in zip(ARMS, alone, holm(alone), paired, holm(paired), strict=True):
+        s, bounds = coefficient(f"food-5-{ARMS[arm]}")
+        above = (each[arm] > 0).sum()
+        row = re.search(rf"^\| \[{re.escape(arm)}\].*$", shown, re.MULTILINE)
+        assert row is not None
+        assert f"| {text(s, 3)} {bounds} | {span(each[arm])} | {above} | {p_text(p)} | {p_text(corrected)} |" in row[0]
+        assert row[0].endswith(f"| {span(pairs[arm])} | {p_text(q)} | {p_text(q_corrected)} |")
+    rate, above = each["ten times the rate"], (pairs["ten times the rate"] > 0).sum()
+    assert (
+        f"in {(rate > 0).sum()} of 24 worlds, and its share is larger than by the\n  baseline's rate in {above}."
+        in shown
+    )
+    own, corrected = p_text(alone[0]), p_text(holm(alone)[0])
+    assert f"(24 worlds, p {own} by t, {corrected} by Holm)" in page("README.md")
+    mean, bounds = span(rate, sign=False).split(" ", 1)
+    told = f"{mean} above one half {bounds[:-1].replace(' …', ' to')}, p {own}, by Holm over the four {corrected})"
+    assert told in page("../paper/paper.md").replace("\n", " ")
+
+
+def test_contests_of_eight_worlds_are_told_by_worlds_first():
+    shown = page("start.md")
+    for name in ("food", "paper"):
+        values = shares(name)
+        signed_rank: Any = stats.wilcoxon(values)
+        assert f"{p_of(values):.3f} by t, {signed_rank.pvalue:.3f} by Wilcoxon" in shown
+
+
+def test_the_contest_of_64_worlds_of_a_device():
+    """Each number of the section, the scoreboard and the paper, from the table of worlds."""
+    values = shares("food-5-rate-10-64")
+    s, bounds = coefficient("food-5-rate-10-64")
+    assert len(values) == 64
+    end = f"the share at the end {span(values)} above one half, in {(values > 0).sum()} of 64 worlds"
+    told = f"s is {text(s, 3)} {bounds}, {end}; p {small(p_of(values))} by t"
+    assert told in page("start.md").replace("\n", " ")
+    assert f"again in 64 new worlds (s {text(s, 3)} {bounds}, p {small(p_of(values))})" in page("README.md")
+    told = f"in 64 new worlds it is {span(values)[:-1].replace(' …', ' to')}, p {small(p_of(values))})"
+    assert told in page("../paper/paper.md").replace("\n", " ")
