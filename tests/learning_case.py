@@ -35,6 +35,8 @@ def config(**changes: Any) -> dict[str, Any]:
         "entropy_coef": 0.001,
         "critic_target": "per_state",
         "acting_weights": "bfloat16",
+        "reward_scaling": "none",
+        "advantage_normalization": "none",
     } | changes
 
 

@@ -284,14 +284,14 @@ void bind_learning(nb::module_& module) {
                nb::arg("seed"), nb::arg("agent_id"), nb::arg("step"), "Advantages, order and update of one learner.");
   learning.def(
       "gae",
-      [](Floats reward, Floats value, float bootstrap, float gamma, float lambda) {
+      [](nb::dict settings, Floats reward, Floats value, float bootstrap) {
         check_length(value.size(), reward.size(), "value");
         std::vector<float> advantage(reward.size()), target(reward.size());
-        estimate_advantage(reward.data(), value.data(), bootstrap, static_cast<int32_t>(reward.size()), gamma, lambda,
-                           advantage.data(), target.data());
+        estimate_advantage(to_config<LearningConfig>(settings), reward.data(), value.data(), bootstrap,
+                           static_cast<int32_t>(reward.size()), advantage.data(), target.data());
         return nb::make_tuple(to_numpy(advantage.data(), {reward.size()}), to_numpy(target.data(), {reward.size()}));
       },
-      nb::arg("reward"), nb::arg("value"), nb::arg("bootstrap"), nb::arg("gamma"), nb::arg("gae_lambda"),
+      nb::arg("config"), nb::arg("reward"), nb::arg("value"), nb::arg("bootstrap"),
       "Advantage and value target of each step.");
   learning.def(
       "permutation",

@@ -293,6 +293,8 @@ struct RewardConfig {
 
 HEDON_ENUM(LearningPolicy, ppo, random, idle, external, fixed)
 HEDON_ENUM(LearningCriticTarget, per_state, batch_mean)
+HEDON_ENUM(LearningRewardScaling, none, window)
+HEDON_ENUM(LearningAdvantageNormalization, none, window)
 HEDON_ENUM(LearningActingWeights, float32, bfloat16)
 struct LearningConfig {
   LearningPolicy policy;
@@ -308,12 +310,15 @@ struct LearningConfig {
   float value_coef;
   float entropy_coef;
   LearningCriticTarget critic_target;
+  LearningRewardScaling reward_scaling;
+  LearningAdvantageNormalization advantage_normalization;
   LearningActingWeights acting_weights;
   HEDON_FIELDS(LearningConfig, policy, minibatch_size, update_epochs, gamma, gae_lambda, clip_coef, learning_rate,
-      adam_beta1, adam_beta2, adam_epsilon, value_coef, entropy_coef, critic_target, acting_weights)
+      adam_beta1, adam_beta2, adam_epsilon, value_coef, entropy_coef, critic_target, reward_scaling,
+      advantage_normalization, acting_weights)
   static constexpr Limit LIMITS[] = {Limit(), Limit::from(1, 65536), Limit::from(0, 1000), Limit::from(0, 1),
       Limit::from(0, 1), Limit::over(0, 10), Limit::from(0, 1), Limit::under(0, 1), Limit::under(0, 1), Limit::over(0,
-      1), Limit::from(0, 1000), Limit::from(0, 1000), Limit(), Limit()};
+      1), Limit::from(0, 1000), Limit::from(0, 1000), Limit(), Limit(), Limit(), Limit()};
 };
 
 struct SpeciesConfig {

@@ -146,8 +146,7 @@ HEDON_FN PpoBatch prepare_update(const Block& block, const LearningConfig& confi
   const uint32_t draws = static_cast<uint32_t>(count + 2) / 4;  // of one permutation: count - 1 numbers, 4 to a draw
   block.for_each(config.update_epochs + 1, [&](int i) {
     if (i == config.update_epochs) {
-      estimate_advantage(rollout.reward, rollout.value, rollout.bootstrap, count, config.gamma, config.gae_lambda,
-                         advantage, target);
+      estimate_advantage(config, rollout.reward, rollout.value, rollout.bootstrap, count, advantage, target);
       return;
     }
     int32_t* const order = orders + int64_t{i} * count;

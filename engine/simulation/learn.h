@@ -25,8 +25,7 @@ HEDON_FN PpoLoss learn(const NetworkKernels& kernels, const NetworkShape& shape,
   int32_t* const owner = reinterpret_cast<int32_t*>(target + rollout.count);
   int32_t* const end = owner + rollout.count;
   int32_t* const order = end + rollout.count;
-  estimate_advantage(rollout.reward, rollout.value, rollout.bootstrap, rollout.count, config.gamma, config.gae_lambda,
-                     advantage, target);
+  estimate_advantage(config, rollout.reward, rollout.value, rollout.bootstrap, rollout.count, advantage, target);
   uint32_t index = 0;
   for (int32_t epoch = 0; epoch < config.update_epochs; ++epoch) {
     int32_t* const of_epoch = order + static_cast<int64_t>(epoch) * rollout.count;

@@ -132,7 +132,7 @@ def test_learn_is_gae_then_update_by_the_stream_s_minibatches_in_order_of_time(k
         kernel, SMALL, settings, case.params, zero, zero, 5, case.observation, case.action, case.log_prob,
         value, reward, 0.3, 42, 7, 1024,
     )  # fmt: skip
-    advantage, target = learning.gae(reward, value, 0.3, settings["gamma"], settings["gae_lambda"])
+    advantage, target = learning.gae(settings, reward, value, 0.3)
     order = np.sort(learning.permutation(42, 7, 1024, 64, 10).reshape(10, 4, 16)).reshape(10, 64)
     expected = learning.update(
         kernel, SMALL, settings, case.params, zero, zero, 5, case.observation, case.action, case.log_prob,

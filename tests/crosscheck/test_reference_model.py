@@ -131,6 +131,7 @@ JUDGED_ELSEWHERE = {
     },
     **{f"learning.{name}": NETWORKS for name in ("learning_rate", "adam_beta1", "adam_beta2", "adam_epsilon")},
     **{f"learning.{name}": NETWORKS for name in ("value_coef", "entropy_coef", "critic_target")},
+    **{f"learning.{name}": NETWORKS for name in ("reward_scaling", "advantage_normalization")},
     "food.<kind>.color": "for figures alone",
     "world.founders": "a digest that a run sets: tests/contract/test_founders.py",
     "world.networks": "a digest that a run sets: tests/contract/test_frozen.py",

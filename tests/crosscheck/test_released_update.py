@@ -54,7 +54,7 @@ def test_observations_survive_the_packing(window):
 
 
 def test_advantages_and_targets(window):
-    found = _engine.learning.gae(window["rew"], window["val"], float(window["nv"][0]), 0.999, 0.95)
+    found = _engine.learning.gae(config(), window["rew"], window["val"], float(window["nv"][0]))
     np.testing.assert_allclose(found[0], window["adv"], atol=1e-5)
     np.testing.assert_allclose(found[1], window["tgt"], atol=1e-5)
 

@@ -34,6 +34,19 @@ class LearningConfig:
         "",
         PAPER + '; the code amounts to "batch_mean"',
     )
+    reward_scaling: Literal["none", "window"] = setting(
+        "none",
+        "what rewards are divided by before an agent learns from them: nothing, or their standard deviation over the "
+        "window, unless that is 0",
+        "",
+        EITHER + "; window is ours",
+    )
+    advantage_normalization: Literal["none", "window"] = setting(
+        "none",
+        "whether advantages are made to have mean 0 and standard deviation 1 over the window",
+        "",
+        EITHER + "; window is ours",
+    )
     acting_weights: Literal["float32", "bfloat16"] = setting(
         "bfloat16",
         "precision of the weights of both hidden layers when agents act; they learn in float32",
