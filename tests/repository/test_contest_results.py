@@ -17,6 +17,8 @@ ARMS = {
     "gamma 0.99": "gamma-99",
 }
 """Ways of learning, as the page names them, and the folder of each."""
+SCALES = {"rewards of unit variance": "scaled", "advantages normalized": "normalized"}
+"""The same where the size of a reward counts less."""
 
 
 def test_contests_of_24_worlds():
@@ -34,20 +36,26 @@ def test_contests_of_24_worlds():
         ]
 
 
-def test_contests_by_other_ways_of_learning():
+@pytest.mark.parametrize("arms", [ARMS, SCALES], ids=["learning", "scale"])
+def test_rows_of_contests_by_other_ways_of_learning(arms):
     """Each row of the page: the share by itself, then less that of the baseline's learning in pairs of equal seeds."""
-    each = {arm: shares(f"food-5-{name}") for arm, name in ARMS.items()}
+    each = {arm: shares(f"food-5-{name}") for arm, name in arms.items()}
     pairs = {arm: values - shares("food-5-24") for arm, values in each.items()}
     alone, paired = ([p_of(values) for values in found.values()] for found in (each, pairs))
     shown = page("start.md")
-    for arm, p, corrected, q, q_corrected in zip(ARMS, alone, holm(alone), paired, holm(paired), strict=True):
-        s, bounds = coefficient(f"food-5-{ARMS[arm]}")
+    for arm, p, corrected, q, q_corrected in zip(arms, alone, holm(alone), paired, holm(paired), strict=True):
+        s, bounds = coefficient(f"food-5-{arms[arm]}")
         above = (each[arm] > 0).sum()
         row = re.search(rf"^\| \[{re.escape(arm)}\].*$", shown, re.MULTILINE)
         assert row is not None
         assert f"| {text(s, 3)} {bounds} | {span(each[arm])} | {above} | {p_text(p)} | {p_text(corrected)} |" in row[0]
         assert row[0].endswith(f"| {span(pairs[arm])} | {p_text(q)} | {p_text(q_corrected)} |")
-    rate, above = each["ten times the rate"], (pairs["ten times the rate"] > 0).sum()
+
+
+def test_the_arm_in_which_the_large_reward_wins():
+    each = {arm: shares(f"food-5-{name}") for arm, name in ARMS.items()}
+    alone, rate, shown = [p_of(values) for values in each.values()], each["ten times the rate"], page("start.md")
+    above = (rate - shares("food-5-24") > 0).sum()
     assert (
         f"in {(rate > 0).sum()} of 24 worlds, and its share is larger than by the\n  baseline's rate in {above}."
         in shown
@@ -56,7 +64,12 @@ def test_contests_by_other_ways_of_learning():
     assert f"(24 worlds, p {own} by t, {corrected} by Holm)" in page("README.md")
     mean, bounds = span(rate, sign=False).split(" ", 1)
     told = f"{mean} above one half {bounds[:-1].replace(' …', ' to')}, p {own}, by Holm over the four {corrected})"
-    assert told in page("../paper/paper.md").replace("\n", " ")
+    article = page("../paper/paper.md").replace("\n", " ")
+    assert told in article
+    scaled, normalized = (
+        span(shares(f"food-5-{name}")).replace(" (", ", ").replace(" …", " to") for name in SCALES.values()
+    )
+    assert f"({scaled[:-1]}, and {normalized}" in article
 
 
 def test_contests_of_eight_worlds_are_told_by_worlds_first():
