@@ -142,6 +142,23 @@ def test_founders_by_their_gene_of_the_learning_rate():
         assert f"| {ends[0]} to {ends[1]} | {len(here)} | {means} |" in page("inner.md")
 
 
+def test_pairs_with_the_gene_of_the_learning_rate_and_without():
+    worlds, shown = table("inner/pairs/worlds.csv"), page("inner.md").replace("\n", " ")
+    gene, control = (worlds.filter(arm=arm).sort("seed") for arm in ("gene", "control"))
+    assert gene["seed"].equals(control["seed"])
+    food = 1000 * (gene["food_per_agent_step"] - control["food_per_agent_step"]).to_numpy()
+    assert (
+        f"{span(food)} foods per 1,000 agent-steps, in {(food > 0).sum()} of ten; p {p_text(p_of(food))} by t" in shown
+    )
+    more = food.mean() / (1000 * control["food_per_agent_step"].to_numpy().mean())
+    assert f"1.1e-3, so {100 * more:.1f} % more" in shown
+    end = gene["g_learning_rate"].to_numpy()
+    assert f"{span(end, 2)}, above 0 in {(end > 0).sum()} of ten, p {p_text(p_of(end))}" in shown
+    for column, digits, label in (("alive", 1, "alive"), ("energy", 2, "energy"), ("w_normal", 2, "weight of food")):
+        difference = (gene[column] - control[column]).to_numpy()
+        assert f"{label} {span(difference, digits)}, p {p_text(p_of(difference))}" in shown
+
+
 def test_ten_seeds_of_the_baseline():
     worlds, drift, shown = (
         table("acting/tables/acting_worlds.csv"),
