@@ -134,6 +134,8 @@ def main() -> None:
     parser.add_argument("--learners", type=int, nargs="+", default=[128, 1024, 8192, 32768])
     parser.add_argument("--precision", nargs="+", default=["highest", "default"], help="JAX's names")
     given = parser.parse_args()
+    if min(given.learners) < 1:
+        parser.error(f"--learners {min(given.learners)}: must be at least 1")
     device = jax.devices()[0]
     for precision in given.precision:
         for learners in given.learners:

@@ -299,16 +299,6 @@ def all_parts(trial: Trial, folder: Path, built: Path | None) -> None:
     trial.part("commands", lambda: commands(trial, folder))
 
 
-def built_alone(emulated: bool) -> int:
-    """Builds the native program, says where it is, and returns the exit status."""
-    try:
-        print(f"device: {build_program(emulated)}")
-    except build.BuildError as error:
-        print(f"device: {error}", file=sys.stderr)
-        return 2
-    return 0
-
-
 def main() -> int:
     """Does all parts that there is time for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -320,15 +310,20 @@ def main() -> int:
     )
     parser.add_argument("--program", type=Path, help="the native program that --build has made, on another machine too")
     given = parser.parse_args()
-    if given.build:
-        return built_alone(given.emulate)
-    if not given.emulate and not has_device():
+    if given.program is not None and not given.program.is_file():
+        print(f"device: --program {given.program}: there is no such file: make it by --build", file=sys.stderr)
+        return 2
+    if not given.build and not given.emulate and not has_device():
         print("device: this machine has no CUDA device, or its driver is missing: nothing was tried", file=sys.stderr)
         return 2
     trial = Trial(given.out, given.seconds, given.emulate)
+    program = given.program.resolve() if given.program else None
     with tempfile.TemporaryDirectory() as folder:
         try:
-            all_parts(trial, Path(folder), given.program)
+            if given.build:
+                print(f"device: {build_program(given.emulate)}")
+                return 0
+            all_parts(trial, Path(folder), program)
         except build.BuildError as error:
             print(f"device: {error}", file=sys.stderr)
             return 2

@@ -96,6 +96,17 @@ def test_mechanisms_have_the_same_bits(emulated: str, name: str):
     require_equal(one, other)
 
 
+def test_learners_of_two_species_that_scale_and_normalize_have_the_same_bits(emulated: str):
+    sizes = ("species.prey.learning.reward_scaling=window", "species.predator.learning.advantage_normalization=window")
+    one, other = pair(emulated, *SHORT, *sizes, preset="predator")
+    one.run(35)
+    other.run(35)
+    require_equal(one, other)
+    plain = make_simulation(*SHORT, preset="predator", seeds=(1,), backend="avx2")
+    plain.run(35)
+    assert plain.worlds[0].digest() != one.worlds[0].digest()
+
+
 def test_queries_of_two_species_have_the_same_bits(emulated: str):
     settings = ("neighbor.foe={of=['predator'], range=90}", "neighbor.any={of=['normal', '*']}")
     settings += ("species.predator.neighbor.foe=false", "species.prey.reward.pay.foe_distance.coef=0.01")

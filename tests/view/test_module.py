@@ -65,6 +65,18 @@ def test_a_window_has_the_bits_of_the_native_engine(module, kernel, preset, wind
 
 @needs_node
 @pytest.mark.parametrize(("module", "kernel"), MODULES)
+def test_learners_that_scale_and_normalize_have_the_bits_of_the_native_engine(module, kernel, tmp_path):
+    settings = (
+        "species.prey.learning.reward_scaling=window",
+        "species.predator.learning.advantage_normalization=window",
+    )
+    settings += ("world.rollout_steps=256",)
+    found = run_in_node(module, engine_text(load_config("predator", overrides=settings), 1), tmp_path, 518)
+    assert found["digest"] == native_digest("predator", kernel, 518, *settings)
+
+
+@needs_node
+@pytest.mark.parametrize(("module", "kernel"), MODULES)
 def test_queries_of_two_species_have_the_bits_of_the_native_engine(module, kernel, tmp_path):
     """Agents observe the nearest, are paid by kin and by what those near eat, and weigh it by who is near."""
     settings = ("neighbor.foe={of=['predator'], range=90}", "neighbor.any={of=['normal', '*']}")
