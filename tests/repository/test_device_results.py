@@ -24,6 +24,18 @@ def test_bits_were_equal():
     assert TRIAL["resume"]["equal"]
 
 
+def test_kernels_that_were_tried_and_the_clocks_of_a_step():
+    kept = json.loads((ROOT / "benchmarks" / "h100-variants.json").read_text(encoding="utf-8"))
+    for row in kept["variants"]:
+        if row["worlds"] == 256 or "predator" in row["change"]:
+            assert f"{round(row['world_steps_per_second'], -2):,}" in PAGE, row
+    clocks = kept["clocks_of_a_step"]
+    for part, digits in (("sense_and_act", -4), ("islands", -3), ("neighbor_list", -3), ("ledger", -3)):
+        assert f"| {round(clocks[part], digits):,} |" in PAGE
+    others = sum(clocks[part] for part in ("commit", "check_and_eat", "rewards_costs_fates", "rules", "grow", "scene"))
+    assert f"| {round(others, -4):,} |" in PAGE
+
+
 def test_updates_of_the_yardstick():
     lines = (ROOT / "benchmarks" / "h100-population.jsonl").read_text(encoding="utf-8").splitlines()
     for row in map(json.loads, lines):
