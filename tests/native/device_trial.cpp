@@ -89,12 +89,12 @@ std::string differing_arrays(const WorldState& here, const WorldState& there) {
   return text;
 }
 
-/// Steps the same world here and there, and looks after every `stride` steps.
-/// stride   [step]
+/// Steps the same world here and there, and looks after every few steps; where bits differ, again from before on, after
+/// every step.
 int report_first(int64_t steps, const WorldInput& input) {
+  constexpr int64_t FEW = 16;
   int64_t from = 0;
-  std::string differ;
-  for (int64_t stride = 16;; stride = 1) {
+  for (int64_t stride = FEW;; stride = 1) {
     const auto here = make_worlds(input, 1, false), there = on_device(input, 1);
     here->run(from);
     advance(*there, from);
@@ -105,11 +105,11 @@ int report_first(int64_t steps, const WorldInput& input) {
       step += stride;
     }
     if (sound(*there, 0, here->digest(0))) break;
-    differ = differing_arrays(here->complete(0).state, there->complete(0).state);
-    if (stride > 1 && step >= stride) {
+    if (stride > 1 && step > 0) {
       from = step - stride;
       continue;
     }
+    const std::string differ = differing_arrays(here->complete(0).state, there->complete(0).state);
     printf("{\"first_step\": %lld, \"alive\": [%d, %d], \"fault\": \"%s\", \"differ\": \"%s\"}\n",
            static_cast<long long>(step), here->numbers(0).head().living_count, there->numbers(0).head().living_count,
            fault_text(*there, 0).c_str(), differ.c_str());
