@@ -2,6 +2,8 @@
 
 import json
 import re
+import runpy
+from pathlib import Path
 
 import numpy as np
 import polars as pl
@@ -204,6 +206,15 @@ def test_the_papers_program_over_its_five_worlds():
     lifetime = summary["mean_lifetime"]
     assert f"{lifetime['mean']:,.0f} ({lifetime['low']:,.0f} … {lifetime['high']:,.0f}) steps" in shown
     assert [world["seed"] for world in summary["worlds"]] == [1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize("seed", [1, 2, 4])
+def test_lines_that_only_mutate(seed):
+    """The table of each seed's drift is what the example makes from the seed alone."""
+    place = Path(__file__).parents[2] / "examples" / "mutation_lines.py"
+    lines = runpy.run_path(str(place))["lines"]
+    first = table("program/mutation-lines.csv").filter(seed=seed).row(0, named=True)
+    assert next(lines([seed])) == first
 
 
 def window_rows(name: str) -> list[str]:
