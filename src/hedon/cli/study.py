@@ -237,8 +237,10 @@ def _make(
 
     runs = runs if ray is None else runs.absolute()  # other nodes have another current folder
     wanted = part_of(needs(request), parse_part(part))
-    found, _ = find_runs(runs, wanted)
+    found, faults = find_runs(runs, wanted)
     jobs = plan_jobs(wanted, found, runs)
+    if jobs:
+        _tell(faults)
     demanded = sum(len(need.steps) for need in wanted)
     console.print(
         f"hedon: {count(len(request.items), 'item')} ({request.fidelity}) from {count(demanded, 'world')}: "
@@ -257,12 +259,16 @@ def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Pat
     from hedon.study.gather import gather
 
     gathered = gather(request, runs)
-    for fault in gathered.faults:
-        typer.echo(f"hedon: note: left out: {fault}", err=True)
+    _tell(gathered.faults)
     page, made = write_studies(studies, gathered, out)
     for one in made:
         console.print(f"{one.item.name}: {one.item.title}", soft_wrap=True)
     console.print(f"wrote {page}, with all figures and tables next to it", soft_wrap=True)
+
+
+def _tell(faults: "Sequence[str]") -> None:
+    for fault in faults:
+        typer.echo(f"hedon: note: left out: {fault}", err=True)
 
 
 def _require_folders(*folders: Path) -> None:

@@ -76,16 +76,22 @@ def find_runs(folder: Path, wanted: Iterable[RunRequirement]) -> tuple[list[Run]
         wanted: settings with their seeds.
 
     Returns:
-        The runs by name, and what is wrong with folders that hold a run that cannot be read.
+        The runs by name, and what is wrong with folders that hold a run that cannot be read, and may be needed.
     """
+    wanted = list(wanted)
     seeds = {need.digest: need.steps.keys() for need in wanted}
+    presets = {(need.config.preset, need.config.fidelity) for need in wanted}
     runs, faults = [], []
     for path in sorted(folder.glob(f"*/{MANIFEST}")):
         try:
             run = open_run(path.parent)
-            mine = seeds.get(run.manifest.config_digest or "", ())
-            if run.manifest.parent is None and any(seed in mine for seed in run.manifest.seeds):
+            manifest = run.manifest
+            mine = seeds.get(manifest.config_digest or "", ())
+            is_needed = manifest.parent is None and any(seed in mine for seed in manifest.seeds)
+            # A config that this version cannot read, as one that lacks a setting, might be one that is needed.
+            if is_needed or (manifest.preset, manifest.fidelity) in presets:
                 load_config(run.path / CONFIG)
+            if is_needed:
                 runs.append(run)
         except (RecordError, ConfigError) as error:
             faults.append(str(error))

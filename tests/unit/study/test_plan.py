@@ -124,6 +124,21 @@ def test_branches_and_other_settings_are_left_alone_and_damage_is_named(tmp_path
     assert len(planned(request, tmp_path)) == 1
 
 
+def test_a_run_whose_config_lacks_a_setting_of_this_version_is_named(tmp_path: Path) -> None:
+    small_run(tmp_path / "earlier", 256)
+    config = tmp_path / "earlier" / "config.toml"
+    kept = [line for line in config.read_text().splitlines(keepends=True) if not line.startswith("reward_scaling")]
+    config.write_text("".join(kept))
+    manifest = load_manifest(tmp_path / "earlier")
+    save_manifest(tmp_path / "earlier", replace(manifest, config_digest="0" * 64))
+    request = Request((an_item("a", BASE),), "corrected")
+    for faults in (find_runs(tmp_path, needs(request))[1], gather(request, tmp_path).faults):
+        (fault,) = faults
+        assert "earlier" in fault
+        assert "learning.reward_scaling: is missing" in fault
+    assert len(planned(request, tmp_path)) == 1
+
+
 def test_a_longer_world_is_read_as_if_it_had_ended_where_it_was_asked_to(tmp_path: Path) -> None:
     """The same seed gives the same bits, so a cut run must be the shorter run, but for what the living did later."""
     small_run(tmp_path / "long" / "run", 512)
