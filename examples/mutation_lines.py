@@ -2,13 +2,15 @@
 
 With `world.mutation_noise = "tabulated"`, as `--fidelity released` has it, the mutation of a birth depends on the seed,
 the gene, the number of births in its window and the birth's index among them, and on nothing else. So the seed alone
-says where a gene drifts. The example draws the births of many lines without selection and writes where they end:
+says where a gene drifts. The example draws the births of many lines without selection and writes where they end, and
+beside them where the genes of a run are, and how they came there:
 
-    python examples/mutation_lines.py --seeds 1,2,3,4,5 --out docs/results/program/mutation-lines.csv
+    python examples/mutation_lines.py --seeds 1,2,3,4,5 --out docs/results/program
+    python examples/mutation_lines.py --run runs/paper --out docs/results/program/full
 """
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -16,14 +18,18 @@ import polars as pl
 from scipy import stats
 
 from hedon._engine.random import philox
+from hedon.analysis import last_agents
 from hedon.config.layout import layouts
 from hedon.config.load import load_config
+from hedon.record.reader import Run, open_run
 
 BIRTHS = 18.0
 """Births of a window, mean of a Poisson law: 110 alive that live 6,200 steps each, 1,024 steps a window."""
 MOST_BIRTHS = 60
 """Births of the fullest window that is drawn; with 18 in the mean, one in 10¹³ has more."""
 GENERATIONS, LINES = 1500, 2000
+STRETCH = 512_000
+"""Steps of a stretch of which means are told: 500 windows."""
 TABLE = 11
 """The purpose of these draws in `engine/base/random.h`."""
 
@@ -46,7 +52,7 @@ def birth_table(seed: int, gene: int, scale: float) -> tuple[np.ndarray, np.ndar
     return scale * np.tan(np.pi * ((words + 0.5) * 2.0**-32 - 0.5)), share / share.sum()
 
 
-def lines(seeds: list[int]) -> Iterator[dict[str, object]]:
+def lines(seeds: Iterable[int]) -> Iterator[dict[str, object]]:
     """Of each seed and gene, the mean mutation of a birth, and where lines end that have one in each generation."""
     config = load_config("baseline", fidelity="released")
     (layout,) = layouts(config).values()
@@ -68,14 +74,66 @@ def lines(seeds: list[int]) -> Iterator[dict[str, object]]:
             }
 
 
+def ends(run: Run) -> pl.DataFrame:
+    """Of each seed and gene of a run, the mean weight of the 5,000 agents born last, and whether lines end on its side.
+
+    Args:
+        run: whose worlds are read, as far as they are recorded.
+    """
+    found = pl.DataFrame(list(lines(run.manifest.seeds)))
+    newest = last_agents(run.agents(skip_damaged=True))
+    mean = {
+        (seed, gene): float(agents[gene].to_numpy().mean(dtype=np.float64))
+        for (seed,), agents in newest.group_by("seed")
+        for gene in run.weight_names
+    }
+    end = pl.Series("end", [round(mean[key], 2) for key in found.select("seed", "gene").iter_rows()])
+    return found.with_columns(end, (end.sign() == found["median"].sign()).alias("as_lines"))
+
+
+def course(run: Run) -> pl.DataFrame:
+    """Means over stretches of a run, per seed: numbers, food, lives, generation and weights.
+
+    Args:
+        run: whose worlds are read, as far as they are recorded.
+    """
+    neutral = pl.mean_horizontal(pl.col(f"{name}_mean") ** 2 for name in run.neutral_names).mean().sqrt()
+    return (
+        run.population(skip_damaged=True)
+        .filter(pl.col("step") > 0)
+        .group_by("seed", step=((pl.col("step") - 1) // STRETCH + 1) * STRETCH, maintain_order=True)
+        .agg(
+            steps=pl.col("steps").sum(),
+            alive=(pl.col("agent_steps").sum() / pl.col("steps").sum()).round(1),
+            food_per_agent_step=(pl.col("eaten_normal").sum() / pl.col("agent_steps").sum()).round(7),
+            steps_per_death=(pl.col("agent_steps").sum() / pl.col("deaths").sum()).round(0),
+            births=pl.col("births").sum(),
+            energy=pl.col("energy_mean").mean().round(3),
+            generation=pl.col("generation_mean").last().round(1),
+            w_normal=pl.col("w_normal_mean").mean().round(3),
+            w_action=pl.col("w_action_mean").mean().round(3),
+            neutral_rms=neutral.round(3),
+        )
+        .sort("seed", "step")
+    )
+
+
 def main() -> None:
-    """Writes the table."""
+    """Writes the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", default="1,2,3,4,5", help="of worlds, with commas")
-    parser.add_argument("--out", type=Path, default=Path("mutation-lines.csv"), help="table that is written")
+    parser.add_argument("--run", type=Path, help="folder of a run of `baseline --fidelity released`, for its seeds")
+    parser.add_argument("--out", type=Path, default=Path("lines"), help="folder of the tables")
     asked = parser.parse_args()
-    pl.DataFrame(list(lines([int(seed) for seed in asked.seeds.split(",")]))).write_csv(asked.out)
-    print(f"wrote {asked.out}")
+    if asked.run is None:
+        tables = {"mutation-lines": pl.DataFrame(list(lines([int(seed) for seed in asked.seeds.split(",")])))}
+    else:
+        run = open_run(asked.run)
+        tables = {"genes": ends(run), "course": course(run)}
+    asked.out.mkdir(parents=True, exist_ok=True)
+    for name, table in tables.items():
+        table.write_csv(asked.out / f"{name}.csv")
+        print(f"wrote {asked.out / f'{name}.csv'}")
 
 
 if __name__ == "__main__":
