@@ -43,7 +43,7 @@ def test_evolution_from_above():
     optimum, low, high = (text(held[name], 2) for name in ("optimum", "optimum_low", "optimum_high"))
     assert held["worlds"] == 18
     assert f"held at {optimum} ({low} … {high}), p {p_text(held['p'])}" in text_of
-    assert f"held at {optimum} ({low} to {high}, p {p_text(held['p'])})" in page("../paper/paper.md").replace("\n", " ")
+    assert f"held at {optimum} ({low} to {high}, p {p_text(held['p'])}," in page("../paper/paper.md").replace("\n", " ")
 
 
 def slopes(path: str, weights: tuple[str, ...], outcome: str) -> dict[int, np.ndarray]:
@@ -173,8 +173,9 @@ def test_ten_seeds_of_the_baseline():
         assert row.endswith(" | ".join(span(values, 2, sign=False) for values in by_arm) + " |")
     scores = drift.filter((pl.col("weight") == "w_normal") & (pl.col("test") == "direction"))
     for row in scores.to_dicts():
-        told = f"{text(row['effect'], 2)} ({text(row['low'], 2)} … {text(row['high'], 2)}), p {p_text(row['p_holm'])}"
-        assert told in shown
+        reach = stats.norm.ppf(0.975) / row["worlds"] ** 0.5  # as the p takes it: scores of drift are standard normal
+        bounds = f"({text(row['effect'] - reach, 2)} … {text(row['effect'] + reach, 2)})"
+        assert f"{text(row['effect'], 2)} {bounds}, p {p_text(row['p_holm'])}" in shown
 
 
 def test_the_baseline_at_full_length():
@@ -206,6 +207,14 @@ def test_the_papers_program_over_its_five_worlds():
     lifetime = summary["mean_lifetime"]
     assert f"{lifetime['mean']:,.0f} ({lifetime['low']:,.0f} … {lifetime['high']:,.0f}) steps" in shown
     assert [world["seed"] for world in summary["worlds"]] == [1, 2, 3, 4, 5]
+    rows = {
+        line.split(" ")[1]: line for line in shown.splitlines() if re.match(r"\| [1-5] \| \d+ \| [\d.]+ \| \d,", line)
+    }
+    for world in summary["worlds"]:
+        means = {name: found["mean"] for name, found in world["weights"].items()}
+        spread = np.sqrt(np.mean([mean**2 for name, mean in means.items() if name.startswith("neutral")]))
+        told = f"| {text(means['w_normal'], 2)} | {text(means['w_action'], 2)} | {spread:.1f} |"
+        assert told in rows[str(world["seed"])]
 
 
 @pytest.mark.parametrize("seed", [1, 2, 4])
