@@ -18,6 +18,7 @@ from hedon_studies.fear.program import PITFALL_COLUMNS, PITFALL_RUN, PREDATOR_RU
 FOUNDERS = {"predator": ("w_normal", "w_action", "w_see_prey", "w_see_predator")}
 FOUNDERS["pitfall"] = ("w_normal", "w_action", "w_see_agent", "w_see_obstacle")
 SURVIVAL_STEPS = 256_000
+PAPER_STEPS = 10_240_000
 HUNTED = ("predator", "predator-small-mouth", "predator-large-mouth", "predator-less-food")
 
 
@@ -207,9 +208,8 @@ def test_the_papers_program_over_its_five_worlds():
     lifetime = summary["mean_lifetime"]
     assert f"{lifetime['mean']:,.0f} ({lifetime['low']:,.0f} … {lifetime['high']:,.0f}) steps" in shown
     assert [world["seed"] for world in summary["worlds"]] == [1, 2, 3, 4, 5]
-    rows = {
-        line.split(" ")[1]: line for line in shown.splitlines() if re.match(r"\| [1-5] \| \d+ \| [\d.]+ \| \d,", line)
-    }
+    part = shown[shown.index("## What it does: the baseline") : shown.index("## At the paper's own length")]
+    rows = {line.split(" ")[1]: line for line in part.splitlines() if re.match(r"\| [1-5] \|", line)}
     for world in summary["worlds"]:
         means = {name: found["mean"] for name, found in world["weights"].items()}
         spread = np.sqrt(np.mean([mean**2 for name, mean in means.items() if name.startswith("neutral")]))
@@ -224,6 +224,35 @@ def test_lines_that_only_mutate(seed):
     lines = runpy.run_path(str(place))["lines"]
     first = table("program/mutation-lines.csv").filter(seed=seed).row(0, named=True)
     assert next(lines([seed])) == first
+
+
+def test_the_papers_program_at_its_own_length():
+    """Rows of the page from its tables, and how many genes ended on the side of the lines that only mutate."""
+    genes, course, shown = table("program/full/genes.csv"), table("program/full/course.csv"), page("released.md")
+    lines = table("program/mutation-lines.csv")
+    assert genes.select(lines.columns).equals(lines.filter(pl.col("seed").is_in([1, 2, 4])))
+    assert course["step"].max() == PAPER_STEPS
+    neutral = genes.filter(pl.col("gene").str.starts_with("neutral"))
+    assert f"and {neutral['as_lines'].sum()} of 48 neutral genes are on their lines' side" in shown
+    assert f"correlate at {np.corrcoef(neutral['median'], neutral['end'])[0, 1]:.2f}" in shown
+    for (seed,), mine in genes.group_by("seed"):
+        stretches = course.filter(pl.col("seed") == seed)
+        last = stretches.filter(pl.col("step") > 0.8 * PAPER_STEPS)
+        own = mine.filter(pl.col("gene").str.starts_with("neutral"))
+        weights = [f"{text(row['end'], 1)} ({text(row['median'], 1)})" for row in mine.head(2).iter_rows(named=True)]
+        told = [
+            str(seed),
+            text(last["alive"].to_numpy().mean(), 0),
+            text(1000 * last["food_per_agent_step"].to_numpy().mean(), 2),
+            f"{last['steps_per_death'].to_numpy().mean():,.0f}",
+            *weights,
+            f"{own['as_lines'].sum()} of 16",
+            f"{np.sqrt(np.mean(own['end'].to_numpy() ** 2)):.1f}",
+            f"{stretches['generation'].to_list()[-1]:,.0f}",
+        ]
+        assert f"| {' | '.join(told)} |" in shown
+        tenths = stretches.filter(pl.col("step") % 1_024_000 == 0).select("w_normal", "w_action")
+        assert f"| {seed} | " + " | ".join(f"{text(a, 1)}, {text(b, 1)}" for a, b in tenths.iter_rows()) + " |" in shown
 
 
 def window_rows(name: str) -> list[str]:
