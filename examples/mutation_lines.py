@@ -21,6 +21,7 @@ from hedon._engine.random import philox
 from hedon.analysis import last_agents
 from hedon.config.layout import layouts
 from hedon.config.load import load_config
+from hedon.record.error import RecordError
 from hedon.record.reader import Run, open_run
 
 BIRTHS = 18.0
@@ -128,7 +129,12 @@ def main() -> None:
     if asked.run is None:
         tables = {"mutation-lines": pl.DataFrame(list(lines([int(seed) for seed in asked.seeds.split(",")])))}
     else:
-        run = open_run(asked.run)
+        try:
+            run = open_run(asked.run)
+        except RecordError as error:
+            parser.error(str(error))
+        if (run.manifest.preset, run.manifest.fidelity, run.manifest.modified) != ("baseline", "released", False):
+            parser.error(f"--run: {asked.run} is not of `hedon run baseline --fidelity released` without --set")
         tables = {"genes": ends(run), "course": course(run)}
     asked.out.mkdir(parents=True, exist_ok=True)
     for name, table in tables.items():
