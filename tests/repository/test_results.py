@@ -4,13 +4,17 @@ import json
 import re
 import runpy
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
 import pytest
 from result_page import p_of, p_text, page, small, span, table, text
+from resumed_run import WINDOW as WINDOW_STEPS
+from resumed_run import small_run
 from scipy import stats
 
+from hedon.record.reader import open_run
 from hedon.statistic import holm
 from hedon.statistic.extinction import extinct_share
 from hedon_studies.fear.program import PITFALL_COLUMNS, PITFALL_RUN, PREDATOR_RUN, WINDOW
@@ -220,10 +224,33 @@ def test_the_papers_program_over_its_five_worlds():
 @pytest.mark.parametrize("seed", [1, 2, 4])
 def test_lines_that_only_mutate(seed):
     """The table of each seed's drift is what the example makes from the seed alone."""
-    place = Path(__file__).parents[2] / "examples" / "mutation_lines.py"
-    lines = runpy.run_path(str(place))["lines"]
     first = table("program/mutation-lines.csv").filter(seed=seed).row(0, named=True)
-    assert next(lines([seed])) == first
+    assert next(example()["lines"]([seed])) == first
+
+
+def example() -> dict[str, Any]:
+    return runpy.run_path(str(Path(__file__).parents[2] / "examples" / "mutation_lines.py"))
+
+
+def test_births_have_the_mutations_that_the_example_draws(tmp_path):
+    """A child's genes are its parent's and the entry of the seed's table; a newborn that dies first has none."""
+    kept = ("world.mutation_noise=tabulated", "world.inheritance=at_window_end")
+    small_run(tmp_path / "run", 12 * WINDOW_STEPS, seeds=(3,), overrides=kept)
+    run, draw, seen = open_run(tmp_path / "run"), example()["birth_table"], 0
+    window = (pl.col("birth_step") - 1) // WINDOW_STEPS
+    whole = pl.col("death_step").is_null() | (pl.col("death_step") > (window + 1) * WINDOW_STEPS)
+    agents = run.agents().sort("agent_id").with_columns(window=window, has_own=whole | (pl.col("birth_step") == 0))
+    own = {each["agent_id"]: each for each in agents.iter_rows(named=True)}
+    for (_,), born in agents.filter(pl.col("birth_step") > 0).group_by("window", maintain_order=True):
+        first = len(born) * (len(born) - 1) // 2  # entries of windows with fewer births come before
+        for place, gene in enumerate(run.weight_names):
+            entry = draw(3, place, 0.02)[0][first : first + len(born)]
+            for child, mutation in zip(born.iter_rows(named=True), entry, strict=True):
+                parent = own[child["parent_id"]]
+                if child["has_own"] and parent["has_own"]:
+                    assert child[gene] == pytest.approx(np.clip(parent[gene] + mutation, -10, 10), abs=2e-5)
+                    seen += 1
+    assert seen > 300
 
 
 def test_the_papers_program_at_its_own_length():
