@@ -1,6 +1,8 @@
 """`hedon assay` as a user calls it: a known sign, an interruption, starts, and each bad input."""
 
 import json
+import re
+import shutil
 import signal
 import subprocess
 import time
@@ -245,3 +247,14 @@ def test_bad_input_ends_in_one_message(folder: Path, arguments: tuple[str, ...],
     assert message in answer.stderr
     assert "Traceback" not in answer.stderr
     assert not answer.stdout
+
+
+def test_a_run_that_cannot_be_read_is_named_before_another_is_made(folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(folder / "whole", tmp_path / "lacking")
+    config = tmp_path / "lacking" / "run" / "config.toml"
+    lines = config.read_text(encoding="utf-8").splitlines(keepends=True)
+    config.write_text("".join(line for line in lines if "reward_scaling" not in line), encoding="utf-8")
+    answer = call(tmp_path, "landscape", "baseline", *BRIEF, "--out", "lacking")
+    assert answer.returncode == 0, answer.stderr
+    assert re.search(r"note: left out: .*config\.toml.*reward_scaling", answer.stderr), answer.stderr
+    assert (tmp_path / "lacking" / "run-run2").is_dir()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.make import all_finished, make_runs
+from hedon.cli.make import all_finished, make_runs, tell_left_out
 from hedon.cli.run import Checkpoint, Threads
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS
@@ -87,7 +87,9 @@ class AssayOptions:
         from hedon.report.answer import write_answer
 
         console, folder = make_console(), self.out or assay_folder(kind, wanted[0])
-        jobs = plan_jobs(wanted, find_runs(folder, wanted)[0], folder, self.checkpoint)
+        found, faults = find_runs(folder, wanted)
+        tell_left_out(faults)
+        jobs = plan_jobs(wanted, found, folder, self.checkpoint)
         if jobs:
             config = wanted[0].config
             worlds, runs = count(sum(len(need.steps) for need in wanted), "world"), count(len(jobs), "run")
@@ -99,9 +101,9 @@ class AssayOptions:
             )
         if not all_finished(jobs, make_runs(jobs, console, self.threads), console):
             return
-        found = ask(read_samples(wanted, folder))
-        files = write_answer(folder, found)
-        console.print(analysis_group({table.name: table for table in found.tables}))
+        answer = ask(read_samples(wanted, folder))
+        files = write_answer(folder, answer)
+        console.print(analysis_group({table.name: table for table in answer.tables}))
         console.print(f"wrote {', '.join(map(str, files))}", soft_wrap=True)
 
 

@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import typer
+
 from hedon.text import count, printable
 
 if TYPE_CHECKING:
@@ -37,6 +39,16 @@ def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: 
     with JobDisplay(console, jobs) as display:
         outcomes = make_jobs(jobs, display, threads, ray)
     return {folder: outcome.status for folder, outcome in outcomes.items()}
+
+
+def tell_left_out(faults: Sequence[str]) -> None:
+    """Says which runs are not used and why, before others are made in their stead.
+
+    Args:
+        faults: As `find_runs` gives them.
+    """
+    for fault in faults:
+        typer.echo(f"hedon: note: left out: {fault}", err=True)
 
 
 def all_finished(

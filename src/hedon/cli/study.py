@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.make import all_finished, make_runs
+from hedon.cli.make import all_finished, make_runs, tell_left_out
 from hedon.cli.run import Hours, Part, Ray, Slurm, Threads
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
@@ -240,7 +240,7 @@ def _make(
     found, faults = find_runs(runs, wanted)
     jobs = plan_jobs(wanted, found, runs)
     if jobs:
-        _tell(faults)
+        tell_left_out(faults)
     demanded = sum(len(need.steps) for need in wanted)
     console.print(
         f"hedon: {count(len(request.items), 'item')} ({request.fidelity}) from {count(demanded, 'world')}: "
@@ -259,16 +259,11 @@ def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Pat
     from hedon.study.gather import gather
 
     gathered = gather(request, runs)
-    _tell(gathered.faults)
+    tell_left_out(gathered.faults)
     page, made = write_studies(studies, gathered, out)
     for one in made:
         console.print(f"{one.item.name}: {one.item.title}", soft_wrap=True)
     console.print(f"wrote {page}, with all figures and tables next to it", soft_wrap=True)
-
-
-def _tell(faults: "Sequence[str]") -> None:
-    for fault in faults:
-        typer.echo(f"hedon: note: left out: {fault}", err=True)
 
 
 def _require_folders(*folders: Path) -> None:
