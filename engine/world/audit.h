@@ -134,6 +134,18 @@ HEDON_FN int32_t agent_at(const World& world, int32_t index) {
   return -1;
 }
 
+/// Whether a circle of the scene is a food that was eaten in this step: it is seen, and nothing is there.
+HEDON_FN bool was_eaten(const World& world, int32_t index) {
+  const RayScene& scene = world.scene;
+  for (int32_t e = 0; e < world.head().eaten_food_count; ++e) {
+    const EatenFood& food = world.state.eaten_food[e];
+    const int32_t type = world.shape->food_type(food.kind);
+    if (scene.x[index] == food.x && scene.y[index] == food.y && static_cast<int32_t>(scene.type[index]) == type)
+      return true;
+  }
+  return false;
+}
+
 /// How far two discs may overlap: the radius of a body. Overlaps after contacts are much smaller: motors close a gap by
 /// at most about 0.3 u per substep, and the corrections of the next substep remove a third of that. With more overlap a
 /// contact is ill-defined, since a body's center is inside the other object, and the two may pass through each other:
@@ -158,7 +170,7 @@ HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
       const Vec2 apart{scene.x[at] - x, scene.y[at] - y};
       const float limit = deep ? 0.25f * (radius + scene.radius[at]) : scene.radius[at];
       if (at == own || world.species(slot).touch.of_type[static_cast<int32_t>(scene.type[at])] < 0 ||
-          !(squared_length(apart) < limit * limit))
+          !(squared_length(apart) < limit * limit) || was_eaten(world, at))
         continue;
       return {Status::overlap_too_deep, agent_at(world, at), radius + scene.radius[at] - length(apart)};
     }

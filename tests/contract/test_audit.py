@@ -51,6 +51,19 @@ def test_a_body_in_a_food_is_named(world):
         world.run(1)
 
 
+def test_a_body_where_a_food_was_eaten_is_sound():
+    """The food is seen once more, and nothing is there: a child may be born in its place."""
+    world = make_simulation(*SAFE, 'world.eaten_food="seen"')
+    set_scene(world, PLACES, [(400, 300)])
+    world.run(WINDOW - 1)
+    for axis, value in (("x", 400.5), ("y", 300.0)):
+        poke(world, f"physics.bodies.{axis}", slot_of(world, 2), value)
+        poke(world, "physics.bodies.angle", slot_of(world, 2), 0.5 * np.pi)  # its mouth is on this side
+    world.run(1)
+    assert world.worlds[0].view("head.eaten_food_count")[0] == 1
+    world.run(WINDOW)
+
+
 @pytest.mark.parametrize("apart", [4.9, 5.1])
 def test_the_solver_jacobi_may_leave_deep_overlaps(apart):
     """As jams leave them; a quarter of the distance of a touch is the bound. Nothing corrects the overlap here."""
