@@ -36,7 +36,7 @@ static: tools $(UV)
 	$(RUN) ruff format --check .
 	$(RUN) clang-format --dry-run -Werror $(shell find engine tests/native -name '*.h' -o -name '*.cpp' -o -name '*.cu')
 	$(RUN) lint-imports
-	$(RUN) pyright src benchmarks release
+	$(RUN) pyright src benchmarks calibrations release
 	$(RUN) --group cuda python tests/cuda.py
 
 sanitized: tools $(UV)
