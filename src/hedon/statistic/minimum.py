@@ -5,7 +5,7 @@ FOR_INTERVAL = 5
 FOR_VERDICT = 30
 """Worlds, or pairs of worlds, from which a study answers yes or no."""
 FOR_FULL_LENGTH = 6
-"""Worlds from which a verdict on a claim about full-length runs is given: six that agree bound a share above one half."""
+"""Worlds from which a claim about full-length runs gets a verdict: six that agree bound a share above one half."""
 
 
 def worlds_needed_note(worlds: int, needed: int = FOR_INTERVAL) -> str:
