@@ -17,7 +17,7 @@ unexport MAKEFLAGS
 # Where this is set, as in many containers, each process compiles all its Python modules again: seconds each time.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-long suite static sanitized sync cuda stubs viewer docs wheels clean
+.PHONY: run test test-long suite static sanitized sync cuda stubs viewer demo docs wheels clean
 
 # The main job: a world in which a reward evolves within a minute on two cores.
 run: sync
@@ -90,8 +90,14 @@ stubs: sync
 viewer: sync
 	$(RUN) --group viewer python web/build.py
 
+# A demo of the live page with a run of `appetite`, in build/demo; the site of the documentation includes it.
+demo: sync
+	rm -rf build/demo build/demo-run
+	$(RUN) hedon run appetite --steps 20480 --frames 64 --out build/demo-run
+	$(RUN) hedon view build/demo-run --story --export build/demo
+
 # The site of the documentation, in build/docs: python3 -m http.server --directory build/docs
-docs: sync
+docs: demo
 	$(RUN) $(SITE) sphinx-build --quiet --fail-on-warning --conf-dir docs/site . build/docs
 	$(RUN) $(SITE) python docs/site/paper.py build/docs/docs/paper/paper.pdf
 

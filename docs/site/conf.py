@@ -32,7 +32,6 @@ exclude_patterns = [
     "tests",
     "web",
     "runs",
-    "docs/live",
     "docs/site/contents.md",
 ]
 
@@ -74,10 +73,10 @@ def add_contents(app: Any, docname: str, source: list[str]) -> None:
         source[0] = ALONE + source[0]
 
 
-def copy_live(app: Any, exception: Exception | None) -> None:
-    """Puts the live page where its links expect it."""
+def copy_demo(app: Any, exception: Exception | None) -> None:
+    """Copies the demo of the live page, which `make demo` builds, to where the site links to it."""
     if exception is None:
-        shutil.copytree(ROOT / "docs" / "live", Path(app.outdir) / "docs" / "live", dirs_exist_ok=True)
+        shutil.copytree(ROOT / app.config.demo, Path(app.outdir) / "docs" / "live", dirs_exist_ok=True)
 
 
 def show_inline(writer: Any, node: Any) -> None:
@@ -95,6 +94,7 @@ def show_block(writer: Any, node: Any) -> None:
 def setup(app: Any) -> dict[str, bool]:
     """Called by Sphinx."""
     app.connect("source-read", add_contents)
-    app.connect("build-finished", copy_live)
+    app.add_config_value("demo", "build/demo", "", str)
+    app.connect("build-finished", copy_demo)
     app.add_html_math_renderer("mathml", (show_inline, None), (show_block, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}

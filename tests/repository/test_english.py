@@ -15,7 +15,7 @@ WRONG = {
     "of whom there is none": r"\bof whom there\b",
 }
 """What is wrong, by a name that tells what to look for."""
-LATER = ("docs/results/", "docs/live/", "src/hedon/view/static/")
+LATER = ("docs/results/", "src/hedon/view/static/")
 PLACES = (
     "README.md",
     "ARCHITECTURE.md",

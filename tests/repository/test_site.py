@@ -1,5 +1,6 @@
 """The site is made without a warning, holds every page of the documentation, and its links lead somewhere."""
 
+import json
 import re
 import subprocess
 import sys
@@ -8,7 +9,10 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
+from command import hedon
 from project_files import ROOT, project_files
+
+from hedon.view.page import page_files
 
 pytest.importorskip("furo", reason="needs Sphinx and its theme: uv sync --group docs")
 
@@ -18,8 +22,13 @@ NO_PAGES = {"web", "docs/site/contents.md"}
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("site")
-    command = [sys.executable, "-m", "sphinx", "--quiet", "--fail-on-warning", "--conf-dir", "docs/site", ".", str(out)]
+    out, run, demo = (tmp_path_factory.mktemp("site") / name for name in ("site", "run", "demo"))
+    recorded = hedon("run", "appetite", "--steps", 1024, "--frames", 256, "--out", run)
+    assert recorded.returncode == 0, recorded.stderr
+    exported = hedon("view", run, "--story", "--export", demo)
+    assert exported.returncode == 0, exported.stderr
+    sphinx = ("sphinx", "--quiet", "--fail-on-warning", "--conf-dir", "docs/site", "--define", f"demo={demo}")
+    command = [sys.executable, "-m", *sphinx, ".", str(out)]
     made = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
     assert made.returncode == 0, made.stderr
     return out
@@ -72,6 +81,8 @@ def test_docstrings_and_equations_are_shown(site: Path) -> None:
     assert "$" not in re.sub(r"<(script|style|pre|code)\b.*?</\1>|<[^>]*>", "", model, flags=re.DOTALL)
 
 
-def test_the_live_page_is_in_it(site: Path) -> None:
-    for name in ("index.html", "hedon.wasm", "data/page.json"):
-        assert (site / "docs/live" / name).read_bytes() == (ROOT / "docs/live" / name).read_bytes()
+def test_the_demo_of_the_live_page_is_in_it(site: Path) -> None:
+    live = site / "docs" / "live"
+    for name, path in page_files().items():
+        assert (live / name).read_bytes() == path.read_bytes()
+    assert json.loads((live / "data/page.json").read_text(encoding="utf-8"))["run"] is True
