@@ -1,0 +1,138 @@
+"""Part A: the fitness of liking the sight of food, and food itself, for six learners with the same founders.
+
+`python -m hedon_studies.same_genes_another_learner.landscape FOLDER` prints the tests that expected.md names, for a
+folder with the founders' table of each arm: `FOLDER/baseline/founders-outcome.csv`, and so on.
+"""
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+from scipy import stats
+
+from hedon.statistic import LEVEL, holm, paired_contrast
+
+ARMS: dict[str, str] = {
+    "baseline": "",
+    "slow": "learning.learning_rate=0.0003",
+    "fast": "learning.learning_rate=0.003",
+    "short": "learning.gamma=0.5",
+    "long": "learning.gamma=0.99",
+    "normalized": "learning.advantage_normalization=window",
+}
+"""The setting that each arm changes."""
+SIGHT, FOOD, ACTION = "w_see_normal", "w_normal", "w_action"
+REPEATS = (0.05, 0.16)
+"""Where the mean of the primary test has to be, for the landscapes to repeat the pilots."""
+CHANGES = (("baseline", "short"), ("baseline", "long"), ("baseline", "normalized"), ("slow", "baseline"))
+HUMPS = ("baseline", "slow", "fast", "short", "long")
+
+Floats = NDArray[np.float64]
+
+
+def slopes(founders: pl.DataFrame, outcome: str, genes: tuple[str, ...] = (SIGHT, FOOD, ACTION)) -> pl.DataFrame:
+    """The slope of relative fitness on each weight, by least squares within each world.
+
+    Args:
+        founders: One row per founder: "seed", the genes and outcomes of `hedon assay landscape`.
+        outcome: "food", energy eaten per step lived, or "descendants", alive at the end; made relative to the mean of
+            the world.
+        genes: Columns of the regression.
+
+    Returns:
+        One row per world: "seed", and the slope on each gene [share of mean fitness per unit of weight]; null in a
+        world whose founders all have fitness 0.
+    """
+    rows: list[dict[str, Any]] = []
+    for (seed,), world in founders.group_by("seed", maintain_order=True):
+        fitness = world[outcome].to_numpy().astype(np.float64)
+        design = np.column_stack([np.ones(len(fitness)), *(world[gene].to_numpy() for gene in genes)])
+        if fitness.mean() > 0:
+            fit = np.linalg.lstsq(design, fitness / fitness.mean(), rcond=None)[0][1:].tolist()
+        else:
+            fit = [None] * len(genes)
+        rows.append({"seed": seed, **dict(zip(genes, fit, strict=True))})
+    return pl.DataFrame(rows, schema={"seed": pl.Int64, **dict.fromkeys(genes, pl.Float64)})
+
+
+def hump(founders: pl.DataFrame) -> pl.DataFrame:
+    """Relative living descendants of those who like sight strongly, less those who like it moderately.
+
+    Args:
+        founders: As for `slopes`. Founders whose weight of food is not above 0 are left out.
+
+    Returns:
+        One row per world: "seed", and "hump", the mean for weights of sight from 1 to 2 less that from 0 to 1.
+    """
+    relative = pl.col("descendants") / pl.col("descendants").mean().over("seed")
+    liking = founders.with_columns(relative=relative).filter(pl.col(FOOD) > 0)
+    strong, moderate = ((pl.col(SIGHT) >= low) & (pl.col(SIGHT) < low + 1) for low in (1.0, 0.0))
+    means = [pl.col("relative").filter(part).mean() for part in (strong, moderate)]
+    rows = liking.group_by("seed", maintain_order=True).agg(hump=means[0] - means[1])
+    return rows.with_columns(pl.col("hump").fill_nan(None))
+
+
+def direction_change(before: pl.DataFrame, after: pl.DataFrame, outcome: str = "food") -> Floats:
+    """The change of the slope on sight less that of the slope on food, for each pair of worlds of equal seeds.
+
+    Args:
+        before: Founders of the first arm.
+        after: Founders of the second arm.
+        outcome: As for `slopes`.
+    """
+    pairs = slopes(before, outcome).join(slopes(after, outcome), on="seed", suffix="_after").drop_nulls().sort("seed")
+    sight, food = (pairs[f"{gene}_after"] - pairs[gene] for gene in (SIGHT, FOOD))
+    return (sight - food).to_numpy()
+
+
+def named_tests(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
+    """The primary test and the nine secondary ones, in the order of expected.md.
+
+    Args:
+        arms: Founders of each arm, by name.
+
+    Returns:
+        One row per test: "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test),
+        "p_sign_flip", and "p_holm", null for the primary test.
+    """
+    rows = [_row("primary: baseline to fast", direction_change(arms["baseline"], arms["fast"]))]
+    rows += [_row(f"{a} to {b}", direction_change(arms[a], arms[b])) for a, b in CHANGES]
+    rows += [_row(f"hump, {name}", hump(arms[name])["hump"].drop_nulls().to_numpy()) for name in HUMPS]
+    corrected = [None, *holm([row["p"] for row in rows[1:]])]
+    return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
+
+
+def repeats_the_pilots(tests: pl.DataFrame) -> bool:
+    """Whether the primary test meets the criterion that was fixed before the first world.
+
+    Args:
+        tests: Of `named_tests`.
+    """
+    primary = tests.row(0, named=True)
+    return primary["low"] > 0 and REPEATS[0] <= primary["effect"] <= REPEATS[1]
+
+
+def _row(name: str, values: Floats) -> dict[str, Any]:
+    found = stats.ttest_1samp(values, 0.0)
+    bounds = found.confidence_interval(LEVEL)
+    return {
+        "test": name,
+        "worlds": len(values),
+        "effect": float(values.mean()),
+        "low": float(bounds.low),
+        "high": float(bounds.high),
+        "p": float(np.asarray(found)[1]),
+        "p_sign_flip": paired_contrast(np.zeros_like(values), values).p,
+    }
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    table = named_tests({name: pl.read_csv(folder / name / "founders-outcome.csv") for name in ARMS})
+    with pl.Config(tbl_rows=20, tbl_cols=10, fmt_str_lengths=40, tbl_width_chars=140):
+        print(table)
+    print("repeats the pilots:", repeats_the_pilots(table))

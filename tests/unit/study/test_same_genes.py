@@ -1,0 +1,62 @@
+"""Landscapes of six learners: the tests that were named before find what is in the founders, and nothing else."""
+
+import numpy as np
+import polars as pl
+import pytest
+
+from hedon_studies.same_genes_another_learner.landscape import (
+    ACTION,
+    ARMS,
+    FOOD,
+    SIGHT,
+    hump,
+    named_tests,
+    repeats_the_pilots,
+    slopes,
+)
+
+
+def founders(seed: int, sight: float, food: float, bend: float = 0.0, worlds: int = 30) -> pl.DataFrame:
+    rng = np.random.default_rng(seed)
+    n = 200 * worlds
+    genes = {name: rng.uniform(-2, 2, n) for name in (SIGHT, FOOD, ACTION)}
+    fitness = 1 + sight * genes[SIGHT] + food * genes[FOOD] + rng.normal(0, 0.3, n)
+    loss = bend * np.clip(genes[SIGHT] - 1, 0, None)
+    row = {"seed": np.repeat(np.arange(worlds), 200), **genes, "food": 0.01 * fitness, "descendants": fitness - loss}
+    return pl.DataFrame(row)
+
+
+def test_slopes_within_worlds_are_found():
+    found = slopes(founders(1, 0.13, 0.1), "food")
+    assert found.height == 30
+    assert found[SIGHT].mean() == pytest.approx(0.13, abs=0.01)
+    assert found[FOOD].mean() == pytest.approx(0.1, abs=0.01)
+    assert found[ACTION].mean() == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_world_without_fitness_has_no_slope():
+    dead = founders(1, 0.1, 0.1, worlds=2).with_columns(
+        descendants=pl.when(pl.col("seed") == 0).then(0.0).otherwise(1.0)
+    )
+    assert slopes(dead, "descendants")[SIGHT].is_null().to_list() == [True, False]
+    assert hump(dead)["hump"].is_null().to_list() == [True, False]
+
+
+def test_the_named_tests_find_a_change_of_direction_and_not_a_change_of_size():
+    arms = {name: founders(number, 0.13, 0.13) for number, name in enumerate(ARMS)}
+    assert not repeats_the_pilots(named_tests(arms))
+    arms["fast"] = founders(10, 0.24, 0.14)
+    arms["long"] = founders(11, 0.26, 0.26)
+    tests = named_tests(arms)
+    assert repeats_the_pilots(tests)
+    assert tests["test"].len() == 10
+    by_name = {row["test"]: row for row in tests.iter_rows(named=True)}
+    assert by_name["primary: baseline to fast"]["p_sign_flip"] < 0.001
+    assert by_name["baseline to long"]["low"] < 0 < by_name["baseline to long"]["high"]
+
+
+def test_a_hump_is_found_in_its_arm():
+    arms = {name: founders(number, 0.1, 0.1, bend=2.0 if name == "slow" else 0.0) for number, name in enumerate(ARMS)}
+    holm = {row["test"]: row["p_holm"] for row in named_tests(arms).iter_rows(named=True)}
+    assert holm["hump, slow"] < 0.001
+    assert hump(arms["slow"])["hump"].mean() < -0.5
