@@ -252,4 +252,5 @@ def synthetic_snapshot(food_kinds: tuple[str, ...] = ("normal",), agents: int = 
         ray_length=np.array([200.0]),
         ray_spread=np.array([60.0]),
         mouth_spread=np.array([60.0]),
+        mouth_center=np.array([0.0]),
     )

@@ -151,7 +151,7 @@ def test_founders_by_their_gene_of_the_learning_rate():
 
 def test_pairs_with_the_gene_of_the_learning_rate_and_without():
     worlds, shown = table("inner/pairs/worlds.csv"), page("inner.md").replace("\n", " ")
-    gene, control = (worlds.filter(arm=arm).sort("seed") for arm in ("gene", "control"))
+    gene, control = (worlds.filter(condition=arm).sort("seed") for arm in ("gene", "control"))
     assert gene["seed"].equals(control["seed"])
     food = 1000 * (gene["food_per_agent_step"] - control["food_per_agent_step"]).to_numpy()
     assert (
@@ -173,7 +173,7 @@ def test_ten_seeds_of_the_baseline():
         page("baseline.md"),
     )
     for gene, label in (("w_food", "weight of food, 5000 born last"), ("w_action", "weight of action")):
-        by_arm = [worlds.filter(arm=arm)[gene].to_numpy() for arm in ("bfloat16", "float32")]
+        by_arm = [worlds.filter(condition=arm)[gene].to_numpy() for arm in ("bfloat16", "float32")]
         (row,) = [line for line in shown.splitlines() if line.startswith(f"| {label} | {text(by_arm[0].mean(), 2)}")]
         assert row.endswith(" | ".join(span(values, 2, sign=False) for values in by_arm) + " |")
     scores = drift.filter((pl.col("weight") == "w_normal") & (pl.col("test") == "direction"))

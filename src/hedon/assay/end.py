@@ -121,8 +121,7 @@ def reported_ends(config: Config) -> list[End]:
 
 
 def _condition(row: Mapping[str, Any]) -> str:
-    """The condition of a table's row; tables of earlier versions call it an arm."""
-    return str(row.get("condition", row.get("arm", "")))
+    return str(row.get("condition", ""))
 
 
 def on_surface(ends: Iterable[End], genes: Sequence[str]) -> list[tuple[End, tuple[float, float]]]:

@@ -161,7 +161,7 @@ def _check_config(folder: _Folder) -> None:
 
 
 def _is_other(config: Config, manifest: Manifest) -> bool:
-    """Whether a config is not that of a manifest. Digests of earlier versions were of other names of settings."""
+    """Whether a config is not that of a manifest; digests under other schemas are of other settings."""
     return manifest.schema == SCHEMA and manifest.config_digest not in (None, digest(config))
 
 

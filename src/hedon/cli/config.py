@@ -1,7 +1,5 @@
 """Commands about configs: list the presets, show a config, compare two, check one."""
 
-import re
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -123,36 +121,6 @@ def check(source: Source, fidelity: Fidelity = None, overrides: Overrides = None
         _ = rule.compiled  # whatever is wrong with its file is said here
     typer.echo(f"{source}: valid (preset {config.preset}, fidelity {config.fidelity})")
     typer.echo(f"digest {digest(pinned(config, found))}")
-
-
-@app.command()
-def migrate(
-    file: Annotated[Path, typer.Argument(help="A config file (.toml).", show_default=False)],
-    stdout: Annotated[bool, typer.Option("--stdout", help="Print it, and leave the file as it is.")] = False,
-) -> None:
-    """Rewrite a config file of an earlier version with the names of this one.
-
-    Comments stay where their lines do, and those that go are shown; a complete file is written anew. A file in which
-    anything is wrong is left as it is. Folders of runs do not need it: they are read as they are.
-
-    \b
-    Examples:
-      hedon config migrate my.toml
-      hedon config migrate my.toml --stdout
-    """
-    from hedon.config.load import migrated_file
-    from hedon.config.toml import read_toml
-
-    text, config = migrated_file(file)
-    if not read_toml(file).get("complete"):
-        for comment in re.findall(r"#.*", file.read_text(encoding="utf-8-sig")):
-            if comment not in text:
-                typer.echo(f"hedon: {file}: a comment goes with its line: {comment}", err=True)
-    if stdout:
-        typer.echo(text, nl=False)
-        return
-    file.write_text(text, encoding="utf-8", newline="")  # the ends of lines that it had
-    typer.echo(f"wrote {file} (preset {config.preset}, fidelity {config.fidelity})")
 
 
 def _food_lines(config: "Config") -> list[str]:

@@ -4,9 +4,9 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from hedon.config.layer import EVERY, settle_genes, settle_stores_and_queries
-from hedon.config.migrate import new_path
 from hedon.config.override import parse_path
 from hedon.config.problem import ConfigError, Problem, folded
+from hedon.config.retired import new_path
 from hedon.config.schema.settings import Settings
 from hedon.config.schema.species import PER_SPECIES, default_path
 from hedon.config.validate import build

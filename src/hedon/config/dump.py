@@ -14,7 +14,7 @@ from hedon.text import brief
 
 SCHEMA = "1"
 """The version of the schema of configs: which settings there are, and what they mean. A digest is of a config under it;
-configs of other versions are migrated as they are read."""
+complete files of other versions are refused."""
 
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 

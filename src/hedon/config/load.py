@@ -3,13 +3,13 @@
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from hedon.config.config import Config
-from hedon.config.dump import SCHEMA, diff, digest, dump_toml
+from hedon.config.dump import SCHEMA, diff, digest
 from hedon.config.field import leaves, value_at
 from hedon.config.layer import (
     Table,
@@ -20,9 +20,9 @@ from hedon.config.layer import (
     stack,
     with_defaults,
 )
-from hedon.config.migrate import FIDELITY_NOW, clashes, is_earlier, migrate_text, migrated, renamed
 from hedon.config.override import parse_override
 from hedon.config.problem import ConfigError, Problem, folded, format_value, nearest
+from hedon.config.retired import FIDELITY_NOW, renamed
 from hedon.config.rule_path import with_absolute_rules
 from hedon.config.schema.settings import PROVENANCE
 from hedon.config.schema.species import ONLY
@@ -54,7 +54,6 @@ SEQUEL_PRESETS = (
 OUR_PRESETS = ("seasons", "appetite")
 """Conditions that are ours."""
 PRESETS = (*PAPER_PRESETS, *SEQUEL_PRESETS, *OUR_PRESETS)
-_MIGRATE = " (`hedon config migrate FILE` rewrites a file)"
 MISTYPED = 0.75
 """How alike two names of species are at least, if one is a typing error for the other: a letter of four."""
 FIDELITIES = ("corrected", "released", "as_printed")
@@ -87,7 +86,7 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
 def _config_of(tables: Table, path: Path | None, fidelity: str | None = None, texts: Sequence[str] = ()) -> Config:
     """The config of a file's tables; without a path they name a preset alone."""
     origin = str(path or tables["preset"])
-    own = tables if path is None else with_absolute_rules(_current(tables, origin), path.parent)
+    own = tables if path is None else with_absolute_rules(tables, path.parent)
     over = [parse_override(text) for text in texts]
     problems = [item for item in over if isinstance(item, Problem)]
     changes = [with_absolute_rules(item, Path()) for item in over if not isinstance(item, Problem)]
@@ -112,39 +111,7 @@ def parse_config(text: str, origin: str) -> Config:
     Raises:
         ConfigError: Something in it is wrong or missing.
     """
-    return _from_layers([], [_current(parse_toml(text, origin) | {"complete": True}, origin)], origin)
-
-
-def _current(tables: Table, origin: str) -> Table:
-    """The tables of a file, where it is a complete one of an earlier version as this version would write it."""
-    if tables.get("complete") and tables.get("fidelity") in FIDELITY_NOW:
-        tables = tables | {"fidelity": FIDELITY_NOW[tables["fidelity"]]}
-    if not is_earlier(tables):
-        return tables
-    old = migrated(tables)
-    problems = [*settle_food(old), *settle_species(old, []), *settle_stores_and_queries(old)]
-    if problems:
-        raise ConfigError(origin, problems)
-    return {"complete": True, "schema": SCHEMA} | asdict(build(Config, old, origin))
-
-
-def migrated_file(path: Path) -> tuple[str, Config]:
-    """The text of a config file with the names of this version, and its config; a complete one is written anew.
-
-    Raises:
-        ConfigError: It is no config file, something in it is wrong, or two settings of it are one now and differ.
-    """
-    tables, origin = read_toml(path), str(path)
-    if is_earlier(tables):
-        config = _config_of(tables, path)
-        return dump_toml(config), config
-    problems = list(clashes(tables))
-    if problems:
-        raise ConfigError(origin, problems)
-    preset = tables.get("preset", DEFAULT_PRESET)
-    below = stack(_preset_layers(preset)) if preset in PRESETS else {}
-    text = migrate_text(path.read_text(encoding="utf-8-sig"), below)
-    return text, _config_of(parse_toml(text.replace("\r\n", "\n"), origin), path)
+    return _from_layers([], [parse_toml(text, origin) | {"complete": True}], origin)
 
 
 def is_modified(config: Config) -> bool:
@@ -248,7 +215,7 @@ def _mistyped_species(below: Table, overrides: list[Table]) -> list[Problem]:
 
 def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     """The config of layers of tables, the lowest first; `above` are those of the user: a file, then overrides."""
-    problems = [*renamed(above[0], _MIGRATE), *(problem for layer in above[1:] for problem in renamed(layer))]
+    problems = [problem for layer in above for problem in renamed(layer)]
     if problems:
         raise ConfigError(origin, problems)
     complete = above[0].get("complete") is True
@@ -277,7 +244,7 @@ def _schema_problems(tables: Table, complete: bool) -> Iterator[Problem]:
     tables.pop("complete", None)
     schema = tables.pop("schema", None if complete else SCHEMA)
     if schema != SCHEMA:
-        rule = f'must be "{SCHEMA}": `hedon config migrate` rewrites files of earlier versions'
+        rule = f'must be "{SCHEMA}": this version reads no complete files of others'
         yield Problem("schema", rule, None if schema is None else format_value(schema))
 
 

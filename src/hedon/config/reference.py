@@ -38,8 +38,7 @@ growth_rate = 0.5
 If a setting is given more than once, the last one counts. The order is: preset, fidelity, file, then
 `--set section.name=value` on the command line. `normal = false` under `[food]` removes a kind of food. The order of
 the kinds is the order of the sensor's channels and of the genome's weights. A file with `complete = true`, as
-`hedon config show` prints it, has all settings and takes none from its preset. `hedon config migrate FILE` gives
-a file of an earlier version the names of this one.
+`hedon config show` prints it, has all settings and takes none from its preset.
 
 Sources: "paper" is the value printed in Kanagawa & Doya (2024), "code" is the value in the configuration of its
 released code, "ours" is a choice of this project; "paper or code" is the paper's value if it prints one, else the

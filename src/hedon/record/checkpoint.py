@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from hedon.record.array_file import ArrayWriter, digest, read_arrays
 from hedon.record.atomic import write_atomically
-from hedon.record.earlier import earlier_digest, with_names
 from hedon.record.error import RecordError
 from hedon.record.folder import checkpoint_path, checkpoint_paths
 
@@ -21,8 +20,8 @@ if TYPE_CHECKING:
 
 KEPT = 2
 """Checkpoints that a run keeps: the newest, and one more in case the newest is damaged."""
-# The members that are not arrays of a world: JSON, and SHA-256 of all others, in this version and in earlier ones.
-_HEAD, _DIGEST, _EARLIER_DIGEST = "head", "sha256", "digest"
+# The members that are not arrays of a world: JSON, and SHA-256 of all others.
+_HEAD, _DIGEST = "head", "sha256"
 
 Fill = Callable[[ArrayWriter], object]
 """Writes the arrays of all worlds, in the engine's shapes: "0/params" is the array `params` of world 0."""
@@ -131,11 +130,9 @@ def load_checkpoint(path: Path) -> Checkpoint:
     """
     try:
         members = read_arrays(path)
-        earlier = members.pop(_EARLIER_DIGEST, None)
-        said = members.pop(_DIGEST) if earlier is None else earlier
-        if said.tobytes().decode() != (digest if earlier is None else earlier_digest)(members):
+        if members.pop(_DIGEST).tobytes().decode() != digest(members):
             raise ValueError("its content does not match its digest")
-        head = _heads().validate_json(with_names(members.pop(_HEAD).tobytes()))
+        head = _heads().validate_json(members.pop(_HEAD).tobytes())
         if path.name != checkpoint_path(path.parent, head.step).name:
             raise ValueError(f"it is of step {head.step}, but its name gives another step")
         return Checkpoint(head, members)

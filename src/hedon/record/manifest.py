@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hedon.record.atomic import write_atomically
-from hedon.record.earlier import with_names
 from hedon.record.error import RecordError
 from hedon.record.folder import MANIFEST
 from hedon.record.schema import FORMAT_VERSION, Columns
@@ -266,7 +265,7 @@ def load_manifest(folder: Path) -> Manifest:
     try:
         content = path.read_bytes()
         version = json.loads(content)["format_version"]
-        manifest = None if version > FORMAT_VERSION else _manifests().validate_json(with_names(content), strict=True)
+        manifest = None if version > FORMAT_VERSION else _manifests().validate_json(content, strict=True)
     except OSError as error:
         raise RecordError(f"cannot read the manifest {path}: {error}") from error
     except (ValueError, KeyError, TypeError, RecursionError, RecordError) as error:

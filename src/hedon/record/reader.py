@@ -202,22 +202,7 @@ def open_run(path: Path | str) -> Run:
         config_text = (folder / CONFIG).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise RecordError(f"cannot read {folder / CONFIG}: {error}") from error
-    manifest = load_manifest(folder)
-    return Run(folder, replace(manifest, config_digest=_digest_of(config_text, manifest)), config_text)
-
-
-def _digest_of(config_text: str, manifest: Manifest) -> str | None:
-    """The digest of a run's config; of earlier versions' under the schema of this one, if it can be read."""
-    if manifest.schema is not None or manifest.config_digest is None:
-        return manifest.config_digest
-    from hedon.config.dump import digest
-    from hedon.config.load import parse_config
-    from hedon.config.problem import ConfigError
-
-    try:
-        return digest(parse_config(config_text, CONFIG))
-    except ConfigError:
-        return manifest.config_digest
+    return Run(folder, load_manifest(folder), config_text)
 
 
 def _remedied(faults: Sequence[RecordError]) -> RecordError:

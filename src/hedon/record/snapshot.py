@@ -100,11 +100,11 @@ class Snapshot:
     ray_length: np.ndarray
     ray_spread: np.ndarray
     mouth_spread: np.ndarray
+    mouth_center: np.ndarray
     food_kinds: tuple[str, ...]
     species_names: tuple[str, ...] = ("agent",)
     obstacles: np.ndarray = field(default_factory=lambda: np.zeros((0, 3, 2), np.float32))
     food_radius: float = 4.0
-    mouth_center: np.ndarray = field(default_factory=lambda: np.zeros(0))
     own: np.ndarray = field(default_factory=lambda: np.zeros((0, len(OWN))))
 
     def of_agents(self, name: str) -> np.ndarray:
@@ -112,8 +112,6 @@ class Snapshot:
         return self.own[:, list(OWN).index(name)] if len(self.own) else getattr(self, name)[self.species]
 
     def __post_init__(self) -> None:
-        if not len(self.mouth_center):  # a file of an earlier version
-            object.__setattr__(self, "mouth_center", np.zeros(len(self.mouth_spread)))
         sizes: dict[str, int] = {"4": 4, "2": 2, "5": len(OWN)}
         for name, (dtype, letters) in _ARRAYS.items():
             array = np.asarray(getattr(self, name), dtype)

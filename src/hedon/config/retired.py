@@ -1,0 +1,106 @@
+"""Names of settings and choices that were retired: each is refused with the one that replaced it."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from hedon.config.layer import Table, has
+from hedon.config.problem import Problem
+
+MOVED = {
+    "body.food_radius": "world.food_radius",
+    "sensor.eaten_food": "world.eaten_food",
+    "sensor.mouths": "world.mouths",
+    "diet.prey_sharing": "world.prey_sharing",
+    "birth.delay": "birth.logit_offset",
+    "birth.order": "world.birth_order",
+    "birth.inheritance": "world.inheritance",
+    "birth.parents": "world.parents",
+    "birth.heading": "world.child_heading",
+    "genome.founders": "world.founders",
+    "genome.mutation_noise": "world.mutation_noise",
+    "learning.rollout_steps": "world.rollout_steps",
+    "learning.networks": "world.networks",
+    "reward.relief_coef": "reward.drive_reduction_coef",
+    "energy.birth_share": "energy.child_share",
+    "energy.starvation": "energy.at_zero",
+    "genome.set_point": "energy.set_point",
+    **{f"nutrient.{name}": f"store.nutrient.{name}" for name in ("initial", "capacity", "basic_cost", "action_cost")},
+    "nutrient.hazard_share": "store.nutrient.hazard_weight",
+    "nutrient.observed": "store.nutrient.observed",
+    "genome.set_point_nutrient": "store.nutrient.set_point",
+    "toxin.decay": "store.toxin.basic_cost",
+    "toxin.threshold": "store.toxin.motor_threshold",
+    "toxin.observed": "store.toxin.observed",
+    "genome.set_point_toxin": "store.toxin.set_point",
+}
+"""Settings of a file that have another path now."""
+GIVEN = ("energy", "nutrient", "toxin")
+"""What a kind of food gave by settings of its own, before it had `gives`."""
+VALUES = {
+    "learning.policy": {"still": "idle", "frozen": "fixed"},
+    "world.mutation_noise": {"frozen": "tabulated"},
+    "world.parents": {"old_slots": "resident_slots"},
+    "reward.family": {"fed": "above", "hungry": "below", "by_age": "between"},
+}
+"""Choices of settings that have other names now, by the paths of today."""
+FIDELITY_NOW = {"text": "as_printed"}
+"""Fidelities that have other names now."""
+GATES = {"by_age": "age"}
+"""Families of rewards whose gate a file must name now, by their names before."""
+SENSES = ("see", "smell")
+"""Sections of `reward` whose terms are among those of `reward.pay` now."""
+
+
+def _owners(tables: Table) -> dict[str, Table]:
+    """What has settings of a species, by how paths in it begin: the file itself, and each species."""
+    return {"": tables} | {f"species.{name}.": own for name, own in _tables(tables.get("species")).items()}
+
+
+def _moves(tables: Table) -> Iterator[tuple[str, str]]:
+    """Each path of the tables that is another one now, and that one."""
+    for place, own in _owners(tables).items():
+        for old, new in MOVED.items():
+            if has(own, old.split(".")):
+                yield place + old, new if new.startswith("world.") else place + new
+        for sense in SENSES:
+            for name in _tables(_tables(own.get("reward")).get(sense)):
+                yield f"{place}reward.{sense}.{name}", f"{place}reward.pay.{sense}_{name}"
+    for kind, food in _tables(tables.get("food")).items():
+        yield from ((f"food.{kind}.{name}", f"food.{kind}.gives.{name}") for name in GIVEN if name in food)
+
+
+def renamed(tables: Table) -> Iterator[Problem]:
+    """Yields each setting that has another path now, and each choice that has another name.
+
+    Args:
+        tables: Of a layer: a file, or overrides.
+    """
+    for old, new in _moves(tables):
+        yield Problem(old, f"is called {new} now")
+    for place, own in _owners(tables).items():
+        for path, names in VALUES.items():
+            section, name = path.split(".")
+            value = own[section][name] if has(own, [section, name]) else None
+            if isinstance(value, str) and value in names:
+                more = f', with reward.gate = "{GATES[value]}"' if value in GATES else ""
+                yield Problem(place + path, f'is called "{names[value]}" now{more}', f'"{value}"')
+
+
+def new_path(path: str) -> str | None:
+    """What a setting is called now that another version had at this path; None if none had it.
+
+    Args:
+        path: as in a file of one species.
+    """
+    names = path.split(".")
+    if len(names) == 3 and names[0] == "food" and names[2] in GIVEN:
+        return f"food.{names[1]}.gives.{names[2]}"
+    if len(names) > 2 and names[0] == "reward" and names[1] in SENSES:
+        rest = ["channel"] if names[3:] in (["over_rays"], ["reads"]) else names[3:]
+        return ".".join(["reward.pay", f"{names[1]}_{names[2]}", *rest])
+    return MOVED.get(path)
+
+
+def _tables(value: Any) -> dict[str, Any]:
+    """The tables in a table; none where there is none."""
+    return {name: each for name, each in value.items() if isinstance(each, dict)} if isinstance(value, dict) else {}
