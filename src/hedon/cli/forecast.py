@@ -6,6 +6,8 @@ import typer
 
 from hedon.cli.config import Fidelity, Overrides, Source
 from hedon.cli.console import make_console
+from hedon.cli.run import DEFAULT_STEPS
+from hedon.experiment.argument import MAX_STEPS
 
 
 def forecast(
@@ -13,21 +15,24 @@ def forecast(
     species: Annotated[
         str | None, typer.Option(help="The species, if there are several; by default the first.")
     ] = None,
+    steps: Annotated[
+        int, typer.Option(help="Steps of the run that you plan, for its number of generations.", min=1, max=MAX_STEPS)
+    ] = DEFAULT_STEPS,
     fidelity: Fidelity = None,
     overrides: Overrides = None,
 ) -> None:
     """Predict, before a run, whether a population can grow, can die out, and what limits it.
 
     Prints the length of life and the number of children at constant energy, the energy that agents need and that
-    food supplies, the probability that a newborn finds a free place, and warnings. Computed from the settings alone;
-    takes seconds.
+    food supplies, the probability that a newborn finds a free place, how much of each food agents eat before they
+    have learned, the number of generations in a run, and warnings. Computed from the settings alone; takes seconds.
 
     \b
     Examples:
       hedon forecast baseline
       hedon forecast baseline --set food.normal.growth_rate=1.0 --set hazard.kappa=0.02
       hedon forecast predator --species predator
-      hedon forecast my.toml --fidelity as_printed
+      hedon forecast my.toml --fidelity as_printed --steps 1024000
     """
     from hedon.cli.display.forecast import forecast_group
     from hedon.config import load_config
@@ -36,4 +41,4 @@ def forecast(
 
     config = load_config(source, fidelity, overrides or ())
     own = choose_species(species, config)
-    make_console().print(forecast_group(config, own, predict(config, own)))
+    make_console().print(forecast_group(config, own, predict(config, own), steps))

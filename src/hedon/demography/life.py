@@ -110,6 +110,25 @@ def expected_lifetime(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.
     return _integrated_survival(config, energy, _oldest(config, flat))
 
 
+def generation_time(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.float64]":
+    """Mean age of a parent when a child is born, at constant energy in a population of constant size.
+
+    Births do not depend on age, so it is the mean age of the living. Source: Lotka; Charlesworth (1994), section 1.3.
+
+    Args:
+        config: The hazard's constants.
+        energy: [energy], any shape.
+
+    Returns:
+        ∫ a·S(a) da / ∫ S(a) da with `survival` S [step], of the shape of `energy`; infinite if nothing kills.
+    """
+    flat = energy_hazard(config, energy)
+    lifetime = expected_lifetime(config, energy)
+    if _alpha_age(config) == 0 or config.beta_age == 0:
+        return lifetime
+    return _integrated_survival(config, energy, _oldest(config, flat), power=1) / lifetime
+
+
 def reproduction_number(
     hazard: HazardConfig, birth: BirthConfig, energy: "ArrayLike", placed: float = 1.0
 ) -> "NDArray[np.float64]":
@@ -143,9 +162,10 @@ def _oldest(config: HazardConfig, flat: "NDArray[np.float64]") -> "NDArray[np.fl
 
 
 def _integrated_survival(
-    config: HazardConfig, energy: "ArrayLike", until: "NDArray[np.float64]"
+    config: HazardConfig, energy: "ArrayLike", until: "NDArray[np.float64]", power: int = 0
 ) -> "NDArray[np.float64]":
-    """The integral of `survival` from 0 to an age [step]."""
+    """The integral of age to a power times `survival`, from 0 to an age [step]."""
     half = 0.5 * until[..., None]
     energy = np.asarray(energy, dtype=np.float64)[..., None]
-    return np.sum(_WEIGHTS * half * survival(config, half * (_NODES + 1.0), energy), axis=-1)
+    age = half * (_NODES + 1.0)
+    return np.sum(_WEIGHTS * half * age**power * survival(config, age, energy), axis=-1)

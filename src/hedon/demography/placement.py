@@ -49,7 +49,7 @@ def is_free(config: Config, radius: float, places: Floats, agents: Floats, foods
         agents: centers of those who are there [u], shape (a, 2).
         foods: centers of the foods that are there [u], shape (f, 2).
     """
-    free = _is_within_walls(config, radius, places)
+    free = is_within_walls(config, radius, places)
     for others, reach in ((agents, 2 * radius), (foods, radius + config.world.food_radius)):
         if len(others):
             offset = places[:, None] - others[None]
@@ -89,7 +89,7 @@ def _fill(
     return agents
 
 
-def _is_within_walls(config: Config, radius: float, places: Floats) -> NDArray[np.bool_]:
+def is_within_walls(config: Config, radius: float, places: Floats) -> NDArray[np.bool_]:
     """Whether a disc lies within the outer polygon, which is convex, and clear of all inner walls."""
     corners = np.array(outline(config.arena))
     along = np.roll(corners, -1, axis=0) - corners

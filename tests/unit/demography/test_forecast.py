@@ -9,8 +9,9 @@ from hedon.config import Config, load_config
 from hedon.config.schema.arena import outline
 from hedon.config.schema.body import MotorConfig
 from hedon.config.schema.schedule import ScheduleConfig
-from hedon.demography.forecast import forecast, fresh_force, setting_warnings
+from hedon.demography.forecast import forecast, setting_warnings
 from hedon.demography.life import birth_rate, expected_lifetime, hazard
+from hedon.demography.motion import fresh_force
 from hedon.demography.placement import is_free, placement_success
 from hedon.demography.schedule import birth_of, factor_at, mean_factor, scaled_hazard
 

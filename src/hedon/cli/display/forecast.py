@@ -9,9 +9,16 @@ from hedon.analysis.result import ResultTable, make_table
 from hedon.cli.display.analysis import analysis_group
 from hedon.config import Config
 from hedon.demography.forecast import Forecast
+from hedon.demography.intake import FACTOR, FORECAST_STEPS
+
+_FEEDING = {
+    "unlearned": "they never learn",
+    "all": "they eat all that grows, in equal shares",
+    "full": "those who have children are always full",
+}
 
 
-def _forecast_tables(config: Config, species: str, found: Forecast) -> dict[str, ResultTable]:
+def _forecast_tables(config: Config, species: str, found: Forecast, steps: int) -> dict[str, ResultTable]:
     """The tables of a forecast, by name."""
     levels = [
         {
@@ -33,19 +40,67 @@ def _forecast_tables(config: Config, species: str, found: Forecast) -> dict[str,
     )
     room = [{"agents in the arena": place.alive, "births that find a place": place.success} for place in found.room]
     sampled = "Sampled, with agents and foods thrown at random. In a run agents gather, and fewer places are free."
-    return {
+    tables = {
         "life": make_table("life", f"{config.name} ({config.fidelity}): life at constant energy", levels, note),
         "room": make_table("room", "Room for newborns", room, sampled),
     }
+    if found.intake:
+        tables["intake"] = _intake_table(found)
+    if found.equilibria:
+        tables["generation"] = _generation_table(found, steps)
+    return tables
 
 
-def forecast_group(config: Config, species: str, found: Forecast) -> Group:
+def _intake_table(found: Forecast) -> ResultTable:
+    rows = [
+        {
+            "food": each.kind,
+            "places": each.places,
+            "grows per step": each.growth,
+            "eaten per step": each.eaten,
+            "from": each.low,
+            "to": each.high,
+            "lies there": each.present,
+        }
+        for each in found.intake
+    ]
+    note = (
+        f"Means over the first {FORECAST_STEPS:,} steps, in which agents hardly learn: foods that fit where their kind "
+        "grows, and how often random motion comes upon them. The mean over worlds lies within a factor of "
+        f"{FACTOR:g}; single worlds that eat few foods scatter more. Agents that have learned eat more, at most what "
+        "grows. Left out: contacts between agents, and obstacles."
+    )
+    return make_table("intake", f"What is eaten in the first {FORECAST_STEPS:,} steps", rows, note)
+
+
+def _generation_table(found: Forecast, steps: int) -> ResultTable:
+    rows = [
+        {
+            "if": _FEEDING[each.feeding],
+            "alive": each.alive,
+            "energy": each.energy,
+            "mean life [step]": each.lifetime,
+            "generation [step]": each.generation,
+            f"generations in {steps:,} steps": steps / each.generation,
+        }
+        for each in found.equilibria
+    ]
+    note = (
+        "Where births and deaths balance. A generation is the mean age of a parent when a child is born. In a run some "
+        "agents eat far more than others, live longer and have most of the children: its generations are longer than "
+        "those of equal shares, and at most those of parents that are always full."
+    )
+    return make_table("generation", "How long a generation is", rows, note)
+
+
+def forecast_group(config: Config, species: str, found: Forecast, steps: int) -> Group:
     """What `hedon forecast` prints.
 
     Args:
         config: With the settings of the population.
         species: Whose.
         found: What they predict.
+        steps: Length of the run that is planned [step].
     """
     warnings = [Text.assemble(("! ", "bold"), text) for text in found.warnings]
-    return Group(analysis_group(_forecast_tables(config, species, found)), *warnings)
+    return Group(analysis_group(_forecast_tables(config, species, found, steps)), *warnings)

@@ -1,0 +1,42 @@
+"""The energy that grows as food, and what agents with a fresh policy are charged."""
+
+import math
+from collections.abc import Callable
+
+from hedon.config import Config
+from hedon.config.schema.food import FoodConfig
+from hedon.config.schema.species import SpeciesConfig
+from hedon.config.type import diet
+from hedon.demography.motion import fresh_force
+
+
+def need(own: SpeciesConfig) -> float:
+    """Energy that an agent with a fresh policy is charged [energy/step]."""
+    return own.energy.basic_cost + own.energy.action_cost * fresh_force(own.motor)
+
+
+def gains(config: Config, own: SpeciesConfig) -> dict[str, float]:
+    """The energy that a species gains by a piece of each kind of food that it eats; negative for poison."""
+    eaten = diet(config, own)
+    return {kind: eaten[kind] * food.gives.get("energy", 0.0) for kind, food in config.food.items() if kind in eaten}
+
+
+def feeding(config: Config, own: SpeciesConfig) -> dict[str, float]:
+    """The energy that a species gains by a piece of each kind of food that feeds it."""
+    return {kind: energy for kind, energy in gains(config, own).items() if energy > 0}
+
+
+def supply(config: Config, own: SpeciesConfig, factor: Callable[[FoodConfig], float]) -> float:
+    """Energy of the food that a species eats that grows [energy/step], for a factor of each kind's growth."""
+    return sum(
+        config.food[kind].growth_rate * factor(config.food[kind]) * energy
+        for kind, energy in feeding(config, own).items()
+    )
+
+
+def fed(config: Config, own: SpeciesConfig, supplied: float) -> float:
+    """Agents that a supply [energy/step] pays for; infinite if living costs nothing, NaN if it eats no food."""
+    if not gains(config, own):
+        return math.nan
+    needed = need(own)
+    return supplied / needed if needed else math.inf

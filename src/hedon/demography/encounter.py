@@ -1,0 +1,75 @@
+"""How often an agent that has learned nothing comes upon a place of food."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from hedon.config import Config
+from hedon.config.schema.species import SpeciesConfig
+from hedon.demography.food_place import throw
+from hedon.demography.motion import unlearned_walk
+from hedon.demography.placement import is_within_walls
+
+BINS = 16
+"""Parts of the time since birth, in each of which a rate is a mean."""
+_WALKERS = 512
+_STRIDE = 4  # steps between two looks at who touches what: an agent moves less than a unit of length in a step
+_PAUSE = 64  # a touch that follows another one within so many steps belongs to the same visit [step]
+
+Floats = NDArray[np.float64]
+
+
+def encounter_rates(
+    config: Config, own: SpeciesConfig, places: Sequence[Floats], steps: int, rng: np.random.Generator
+) -> Floats:
+    """Visits of an agent's mouth to a place of food, by the time since the agent was born.
+
+    Agents start at uniform places and walk as in `hedon.demography.motion`. A mouth that touches a place has visited
+    it, and visits it again once it has been away.
+
+    Args:
+        config: Settings of the world.
+        own: The species.
+        places: Centers of places [u], (places, 2) for each kind of food.
+        steps: Length of the walk [step].
+        rng: Source of the walks.
+
+    Returns:
+        Visits per agent, place and step, (kinds, BINS), over equal parts of the time; 0 for a kind without places.
+    """
+    counts, size = [len(each) for each in places], np.array([config.arena.width, config.arena.height])
+    start = throw(
+        lambda count: rng.random((count, 2)) * size,
+        lambda tried: is_within_walls(config, own.body.radius, tried),
+        0.0,
+        _WALKERS,
+    )
+    visits = np.zeros((len(places), BINS))
+    if not len(start) or not sum(counts):
+        return visits
+    kind, sites = np.repeat(np.arange(len(places)), counts), np.vstack(places)
+    tree, reach = KDTree(sites), own.body.radius + config.world.food_radius
+    left = np.full((len(start), len(sites)), -_PAUSE - 1)  # when an agent last touched a place that it had visited
+    middle = np.exp(1j * math.radians(own.sensor.mouth_center))
+    edge = math.cos(math.radians(own.sensor.mouth_spread)) if own.sensor.mouth_spread < 180 else -2.0
+    walk = unlearned_walk(config, own, start[:, 0] + 1j * start[:, 1], steps, rng)
+    for step, (place, heading) in enumerate(walk, start=1):
+        if step % _STRIDE:
+            continue
+        near = tree.query_ball_point(np.column_stack([place.real, place.imag]), reach)
+        lengths = [len(each) for each in near]
+        if not sum(lengths):
+            continue
+        who, what = np.repeat(np.arange(len(start)), lengths), np.concatenate(near).astype(np.intp)
+        toward = sites[what] @ [1, 1j] - place[who]
+        ahead = (toward * (heading[who] * middle).conj()).real
+        touches = ahead >= edge * np.abs(toward)
+        since = step - left[who, what]
+        new = touches & (since > _PAUSE) & (step > _STRIDE)  # nothing grows where an agent is
+        visits[:, (step - 1) * BINS // steps] += np.bincount(kind[what[new]], minlength=len(places))
+        stays = touches | (since <= _PAUSE) | (step == _STRIDE)
+        left[who[stays], what[stays]] = step
+    return visits / (len(start) * np.maximum(counts, 1)[:, None] * (steps / BINS))

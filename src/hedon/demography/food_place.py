@@ -1,0 +1,175 @@
+"""Where food can lie: places drawn from the law of a kind, and how many foods fit there at once."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from hedon.config import Config
+from hedon.config.schema.food import FoodConfig
+from hedon.demography.placement import is_within_walls
+
+TRIES = 20_000
+"""Places that the engine tries for each founder and each food of a new world (`world/population.h`)."""
+SCENES = 4
+"""Times that the places of a kind are filled, to find how many there are."""
+_BATCH = 512  # places drawn at once
+_SAMPLE = 512  # places kept, at most
+
+Floats = NDArray[np.float64]
+
+
+def draw_food_places(
+    config: Config, food: FoodConfig, count: int, steps: int, rng: np.random.Generator, turn: int = 0
+) -> Floats:
+    """Draws places as the engine does for new food; some may lie outside the arena.
+
+    Args:
+        config: For the arena.
+        food: Kind with its law.
+        count: Number of places.
+        steps: Time over which the places are drawn, for centers that drift [step].
+        rng: Source of the draws.
+        turn: Which center is used, of centers that take turns.
+
+    Returns:
+        Centers [u], shape (count, 2).
+    """
+    law, size = food.placement, np.array([config.arena.width, config.arena.height])
+    if law.form == "uniform":
+        return rng.random((count, 2)) * size
+    which = rng.integers(len(law.centers), size=count) if law.form == "mixture" else np.full(count, turn)
+    middle = np.array(law.centers)[which] + rng.random((count, 1)) * steps * np.array(law.drift)
+    around = rng.uniform(-1, 1, (count, 2)) if law.form == "rectangle" else rng.normal(size=(count, 2))
+    return np.clip(middle, 0.0, size) + np.array(law.sd) * around
+
+
+def throw(
+    draw: Callable[[int], Floats],
+    free: Callable[[Floats], NDArray[np.bool_]],
+    reach: float,
+    count: int,
+    *,
+    tries: int = TRIES,
+    budget: float = np.inf,
+) -> Floats:
+    """Puts things one after another at the first place drawn that is free.
+
+    Args:
+        draw: Draws so many places, (n, 2).
+        free: Which places are free of everything else, (n,).
+        reach: Least distance between two of the things [u].
+        count: Number of things.
+        tries: Places tried for each of them; if none is free, the rest is given up.
+        budget: Places tried for all of them.
+
+    Returns:
+        Centers of those that found a place [u], (found, 2).
+    """
+    placed, tried, missed = np.empty((0, 2)), 0, 0
+    while len(placed) < count and missed < tries and tried < budget:
+        places = draw(_BATCH)
+        open_places = free(places)
+        if len(placed):
+            open_places &= KDTree(placed).query(places)[0] >= reach
+        at = np.flatnonzero(open_places)
+        near = np.hypot(*np.moveaxis(places[at, None] - places[at], 2, 0)) < reach
+        taken = np.zeros(len(at), bool)
+        for i in range(len(at)):
+            taken[i] = not (near[i] & taken).any()
+        chosen = at[taken][: count - len(placed)]
+        placed = np.vstack([placed, places[chosen]])
+        tried += _BATCH
+        missed = _BATCH - 1 - int(chosen[-1]) if len(chosen) else missed + _BATCH
+    return placed
+
+
+@dataclass(frozen=True)
+class FoodPlaces:
+    """The places of one kind of food while no agent is there.
+
+    Attributes:
+        limit: Foods that find a place in the time of a forecast if none is eaten, at most the capacity of the kind; of
+            centers that take turns, around one of them.
+        share: Share of the places drawn that lie within the arena.
+        sample: Some of the places [u], (places, 2).
+    """
+
+    limit: float
+    share: float
+    sample: Floats
+
+
+def food_places(config: Config, food: FoodConfig, steps: int, rng: np.random.Generator) -> FoodPlaces:
+    """Finds how many foods of a kind fit where its law puts them, by putting them there.
+
+    Args:
+        config: For arena and sizes.
+        food: Kind of food.
+        steps: Time for which the engine tries [step].
+        rng: Source of the draws.
+    """
+    radius, budget = config.world.food_radius, min(food.candidates * steps, TRIES)
+    turns = len(food.placement.centers) if food.placement.form == "switching" else 1
+    scenes = [
+        throw(
+            lambda count, turn=scene % turns: draw_food_places(config, food, count, steps, rng, turn),
+            lambda places: is_within_walls(config, radius, places),
+            max(2 * radius, food.placement.spacing),
+            food.capacity,
+            tries=budget,
+            budget=budget,
+        )
+        for scene in range(SCENES)
+    ]
+    drawn = np.vstack([draw_food_places(config, food, 1024, steps, rng, scene % turns) for scene in range(SCENES)])
+    sample = np.vstack(scenes)
+    return FoodPlaces(
+        limit=float(np.mean([len(placed) for placed in scenes])),
+        share=float(is_within_walls(config, radius, drawn).mean()),
+        sample=sample[rng.permutation(len(sample))[:_SAMPLE]],
+    )
+
+
+def missing_at_start(config: Config, rng: np.random.Generator) -> str:
+    """What finds no place when a world is made, in words; empty if all founders and first foods do.
+
+    Args:
+        config: Of the world.
+        rng: Source of the draws, one scene.
+    """
+    size = np.array([config.arena.width, config.arena.height])
+    bodies, radii = np.empty((0, 2)), np.empty(0)
+
+    def free(radius: float) -> Callable[[Floats], NDArray[np.bool_]]:
+        def of(places: Floats) -> NDArray[np.bool_]:
+            clear = is_within_walls(config, radius, places)
+            for other in np.unique(radii):
+                clear &= KDTree(bodies[radii == other]).query(places)[0] >= radius + other
+            return clear
+
+        return of
+
+    crowd = [
+        (f"founders of {name}", own.population.initial_count, own.body.radius, 0.0, None)
+        for name, own in config.species.items()
+    ]
+    foods = [
+        (f"foods of the kind {name}", food.initial_count, config.world.food_radius, food.placement.spacing, food)
+        for name, food in config.food.items()
+    ]
+    for what, count, radius, spacing, food in (*crowd, *foods):
+        placed = throw(
+            lambda n, food=food: (
+                rng.random((n, 2)) * size if food is None else draw_food_places(config, food, n, 0, rng)
+            ),
+            free(radius),
+            max(2 * radius, spacing),
+            count,
+        )
+        if len(placed) < count:
+            return f"{len(placed):,} of {count:,} {what} find a place"
+        bodies, radii = np.vstack([bodies, placed]), np.append(radii, np.full(count, radius))
+    return ""

@@ -1,0 +1,206 @@
+"""What a population eats in the first steps of a world, while its agents have learned little, as mean numbers."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.config import Config
+from hedon.config.schema.food import FoodConfig
+from hedon.config.schema.species import SpeciesConfig
+from hedon.demography.balance import gains, need
+from hedon.demography.encounter import BINS, encounter_rates
+from hedon.demography.food_place import FoodPlaces, food_places
+from hedon.demography.life import birth_rate, hazard
+from hedon.demography.schedule import birth_of, factor_at, hazard_of, scaled_hazard
+
+FORECAST_STEPS = 2048
+"""Steps of a new world whose intake is forecast: two windows of the presets."""
+FACTOR = 3.0
+"""Mean intakes of worlds agree with their forecasts within this factor: `tests/property/test_intake.py`."""
+_STRIDE = 8  # steps that are computed at once
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class KindIntake:
+    """What a species eats of a kind of food in the first `FORECAST_STEPS` of a world, as means over these steps.
+
+    Attributes:
+        kind: Name of the kind.
+        places: Foods that can lie at once where the kind grows; around one center, if centers take turns.
+        growth: Foods that grow [food/step].
+        low: Foods eaten at least, 1/`FACTOR` of the forecast [food/step].
+        eaten: Foods eaten [food/step].
+        high: Foods eaten at most, `FACTOR` times the forecast, or all there are [food/step].
+        present: Foods that lie there.
+    """
+
+    kind: str
+    places: float
+    growth: float
+    low: float
+    eaten: float
+    high: float
+    present: float
+
+
+@dataclass(frozen=True)
+class Ground:
+    """Where food lies and how often an agent comes by while it has learned nothing.
+
+    Attributes:
+        places: Of each kind of food.
+        visits: By species, the visits per agent, place and step, (kinds, BINS) over equal parts of the time since
+            birth; 0 for a kind that it does not eat.
+    """
+
+    places: tuple[FoodPlaces, ...]
+    visits: dict[str, Floats]
+
+    def mean_visits(self, species: str, age: float) -> Floats:
+        """Visits per agent, place and step of a population whose mean age is `age` [step], (kinds,).
+
+        Ages are taken as exponential, and agents beyond the last part of the time as those in it.
+        """
+        ends = np.append(np.arange(BINS) * (FORECAST_STEPS / BINS), np.inf)
+        return self.visits[species] @ -np.diff(np.exp(-ends / max(age, 1.0)))
+
+
+class _Foods(NamedTuple):
+    """The numbers of foods of each kind, (kinds,) each."""
+
+    stock: Floats
+    present: Floats
+    eaten: Floats
+
+
+def survey(config: Config, rng: np.random.Generator) -> Ground:
+    """Samples where each kind of food can lie, and how often agents of each species come by.
+
+    Args:
+        config: Settings of the world.
+        rng: Source of the samples.
+    """
+    places = tuple(food_places(config, food, FORECAST_STEPS, rng) for food in config.food.values())
+    visits = {}
+    for name, own in config.species.items():
+        eaten = gains(config, own)
+        sites = [
+            each.sample if kind in eaten else each.sample[:0] for kind, each in zip(config.food, places, strict=True)
+        ]
+        visits[name] = encounter_rates(config, own, sites, FORECAST_STEPS, rng)
+    return Ground(places, visits)
+
+
+def first_intake(config: Config, species: str, ground: Ground, success: Floats) -> tuple[KindIntake, ...]:
+    """Follows the mean numbers of agents, of their energy and of foods through the first steps of a world.
+
+    Foods grow where there is room and are eaten as agents come by. A newborn starts to walk anew, and a birth fails as
+    often as it finds no place. Other species keep their founders.
+
+    Args:
+        config: Settings of the world.
+        species: Whose intake.
+        ground: From `survey`.
+        success: Chance that a birth finds a place with 0, 1, … agents, up to the capacity.
+
+    Returns:
+        One for each kind of food that the species eats.
+    """
+    own, kinds, value = config.species[species], list(config.food.values()), gains(config, config.species[species])
+    energy_of = np.array([value.get(kind, 0.0) for kind in config.food])
+    repeats = FORECAST_STEPS // _STRIDE // BINS
+    rates = np.repeat(ground.visits[species], repeats, axis=1)
+    others = np.zeros_like(rates)
+    for name, each in config.species.items():
+        if name != species:
+            others += np.repeat(ground.visits[name], repeats, axis=1) * each.population.initial_count
+    cohorts = np.zeros(FORECAST_STEPS // _STRIDE + 1)  # the living by when they were born
+    cohorts[0] = own.population.initial_count
+    held = own.energy.initial * cohorts[0]
+    foods = _Foods(np.array([float(food.initial_count) for food in kinds]), *np.zeros((2, len(kinds))))
+    foods = foods._replace(present=np.minimum(foods.stock, _limits(kinds, ground, foods.eaten)))
+    total, seen = np.zeros(len(kinds)), np.zeros(len(kinds))
+    for i in range(len(cohorts) - 1):
+        mine, alive = rates[:, : i + 1] @ cohorts[i::-1], cohorts.sum()
+        rate = mine + others[:, i]
+        before = foods.eaten
+        foods = _feed(config, ground, foods, rate, _covered(config, own, alive), i * _STRIDE)
+        meals = (foods.eaten - before) * np.divide(mine, rate, out=np.zeros(len(kinds)), where=rate > 0)
+        total += meals
+        seen += foods.present
+        held = _live(own, cohorts, i, held, float(energy_of @ meals), success)
+    steps, growth = FORECAST_STEPS, _growth(kinds)
+    found = []
+    for k, kind in enumerate(config.food):
+        if kind in value:
+            eaten, most = total[k] / steps, kinds[k].initial_count / steps + growth[k]
+            high = float(min(FACTOR * eaten, most))
+            limit = ground.places[k].limit
+            found.append(
+                KindIntake(
+                    kind, limit, growth[k], float(eaten / FACTOR), float(eaten), high, float(seen[k] * _STRIDE / steps)
+                )
+            )
+    return tuple(found)
+
+
+def _growth(kinds: list[FoodConfig]) -> list[float]:
+    """Foods of each kind that grow, mean over the time of a forecast [food/step]."""
+    time = np.arange(FORECAST_STEPS)
+    return [food.growth_rate * float(factor_at(food.schedule, "growth_rate", time).mean()) for food in kinds]
+
+
+def _limits(kinds: list[FoodConfig], ground: Ground, eaten: Floats) -> Floats:
+    """Foods of each kind that there is room for, when so many were eaten: centers take turns."""
+    limit = np.array([places.limit for places in ground.places])
+    for k, food in enumerate(kinds):
+        if food.placement.form == "switching":
+            turns = min(1 + int(eaten[k] / food.placement.switch_after), len(food.placement.centers))
+            limit[k] = min(turns * limit[k], food.capacity)
+    return limit
+
+
+def _covered(config: Config, own: SpeciesConfig, alive: float) -> float:
+    """The share of the arena where agents leave no room for a food."""
+    reach = own.body.radius + config.world.food_radius
+    return -math.expm1(-alive * math.pi * reach**2 / (config.arena.width * config.arena.height))
+
+
+def _feed(config: Config, ground: Ground, foods: _Foods, rate: Floats, covered: float, step: int) -> _Foods:
+    """Lets foods grow and be eaten for `_STRIDE` steps, each at a rate [1/step]."""
+    kinds = list(config.food.values())
+    growth = np.array([food.growth_rate * float(factor_at(food.schedule, "growth_rate", step)) for food in kinds])
+    most = np.array([food.capacity * float(factor_at(food.schedule, "capacity", step)) for food in kinds])
+    stock = np.maximum(np.minimum(foods.stock + _STRIDE * growth, most), np.minimum(foods.stock, foods.present))
+    limit = _limits(kinds, ground, foods.eaten)
+    full = np.divide(foods.present, limit, out=np.ones(len(limit)), where=limit > 0)
+    roomy = limit >= [food.capacity for food in kinds]
+    free = (1.0 - covered) * np.where(roomy, 1.0, np.clip(1.0 - full, 0.0, 1.0) ** 2)
+    tries = _STRIDE * np.array([food.candidates for food in kinds]) * [places.share for places in ground.places]
+    added = np.minimum(np.maximum(np.minimum(np.floor(stock + 1e-9), limit) - foods.present, 0.0), tries * free)
+    eaten = (foods.present + 0.5 * added) * -np.expm1(-_STRIDE * rate)
+    return _Foods(stock - eaten, foods.present + added - eaten, foods.eaten + eaten)
+
+
+def _live(own: SpeciesConfig, cohorts: Floats, i: int, held: float, gained: float, success: Floats) -> float:
+    """Lets agents pay, die and have children for `_STRIDE` steps; changes the cohorts and returns what all hold."""
+    alive = float(cohorts.sum())
+    if alive < 1e-6:
+        return 0.0
+    energy = held / alive
+    held = max(held + gained - _STRIDE * alive * (need(own) + own.energy.decay * energy), 0.0)
+    if own.energy.at_zero == "death" and held == 0.0:
+        cohorts *= min(gained / (_STRIDE * alive * need(own)), 1.0) if need(own) > 0 else 1.0
+    death = scaled_hazard(hazard_of(own), float(factor_at(own.hazard.schedule, "scale", i * _STRIDE)))
+    survivors = math.exp(-_STRIDE * min(max(float(hazard(death, 0.0, energy)), 0.0), 1.0))
+    pairs = 0.5 if own.birth.mating == "pairs" else 1.0
+    placed = float(np.interp(alive, np.arange(len(success)), success))
+    children = pairs * _STRIDE * alive * float(birth_rate(birth_of(own), energy)) * placed
+    cohorts *= survivors
+    cohorts[i + 1] = min(children, max(own.population.capacity - float(cohorts.sum()), 0.0))
+    return min(held * survivors, float(cohorts.sum()) * own.energy.capacity)

@@ -1,0 +1,63 @@
+"""Lives at constant energy, and the room that they leave for newborns."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from hedon.config.schema.species import SpeciesConfig
+from hedon.demography.life import expected_lifetime, reproduction_number
+from hedon.demography.schedule import birth_of, mean_hazard
+
+
+@dataclass(frozen=True)
+class EnergyLevel:
+    """A life at constant energy.
+
+    Attributes:
+        energy: [energy].
+        lifetime: mean age at death [step].
+        r0: children tried in a whole life; those that find a place are fewer.
+        refusal: share of them that may fail before a lineage shrinks, 1 − 1/r0; 0 where it shrinks in any case.
+        population: agents in the arena at which that share of births fails: the number that room allows at this
+            energy; the capacity where more would find places, NaN where the lineage shrinks in any case.
+    """
+
+    energy: float
+    lifetime: float
+    r0: float
+    refusal: float
+    population: float
+
+
+@dataclass(frozen=True)
+class Room:
+    """The chance that a birth finds a place (and a slot), by agents in the arena."""
+
+    alive: int
+    success: float
+
+
+def levels_of(own: SpeciesConfig, places: tuple[Room, ...]) -> tuple[EnergyLevel, ...]:
+    """Lives at some energies up to the capacity; without places the numbers that room allows are NaN."""
+    most = own.energy.capacity
+    energies = [*(energy for energy in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if energy < most), most]
+    return tuple(_level(own, energy, places) for energy in energies)
+
+
+def _level(own: SpeciesConfig, energy: float, places: tuple[Room, ...]) -> EnergyLevel:
+    hazard = mean_hazard(own)
+    lifetime = float(expected_lifetime(hazard, energy))
+    r0 = float(reproduction_number(hazard, birth_of(own), energy)) if own.birth.kappa else 0.0
+    refusal = max(1.0 - 1.0 / r0, 0.0) if r0 > 0 else 0.0
+    population = _alive_at(1.0 / r0, places) if r0 > 1 and places else math.nan
+    return EnergyLevel(energy, lifetime, r0, refusal, population)
+
+
+def _alive_at(success: float, places: tuple[Room, ...]) -> float:
+    """The number of agents at which the chance of a place has fallen to a value; the largest where it has not."""
+    falling = np.minimum.accumulate([room.success for room in places])
+    alive = np.array([room.alive for room in places], np.float64)
+    if success < falling[-1]:
+        return float(alive[-1]) + 1.0
+    return float(np.interp(-success, -falling, alive))

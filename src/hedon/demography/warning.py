@@ -1,0 +1,180 @@
+"""What to know of a setting before running, in sentences."""
+
+import math
+from collections.abc import Iterator, Mapping
+from functools import partial
+
+from hedon.config import Config
+from hedon.config.schema.food import FoodConfig
+from hedon.config.schema.schedule import ScheduleConfig
+from hedon.config.schema.species import SpeciesConfig
+from hedon.config.type import diet
+from hedon.demography.balance import fed, feeding, gains, supply
+from hedon.demography.level import EnergyLevel
+from hedon.demography.life import energy_hazard, expected_lifetime, reproduction_number
+from hedon.demography.schedule import birth_of, factor_at, factor_range, hazard_of, mean_factor, scaled_hazard
+
+LONG_LIFE = 100_000
+"""Mean life [step] beyond which births and deaths are too few for selection to act on."""
+
+
+def warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...]) -> tuple[str, ...]:
+    """What follows from the settings of a species, without samples.
+
+    Args:
+        config: Settings of the world, of founders with mean genes.
+        species: Whose forecast.
+        levels: Its lives at constant energy.
+    """
+    own = config.species[species]
+    starving, best = levels[0], max(levels, key=lambda level: level.r0)
+    capacity, founders = own.population.capacity, own.population.initial_count
+    floor = own.energy.at_zero == "floor"
+    found = [*_gene_warnings(own), *_rule_warnings(own)]
+    if best.r0 < 1:
+        found.append(f"It cannot live: R0 is {best.r0:.2f} at best, so every lineage dies out however well it eats.")
+    fed_by_others = any(store.birth_weight > 0 for store in own.store.values())  # whom this forecast takes to be full
+    if floor and starving.r0 >= 1 and math.isfinite(starving.lifetime) and not fed_by_others:
+        found.append(
+            f"It can live without eating: R0 is {starving.r0:.2f} at energy 0, so an agent that never eats replaces "
+            f"itself. It lives {starving.lifetime:,.0f} steps and pays nothing. The world can go on starving, its size "
+            "set by room for newborns, and drift is strong."
+        )
+    if floor and math.isinf(starving.lifetime):
+        found.append("It cannot die: at energy 0 the chance of death is 0, and it rises with neither hunger nor age.")
+    elif math.isinf(best.lifetime):
+        found.append(f"It need not die: at energy {best.energy:g} the chance of death is 0 at any age.")
+    growing = supply(config, own, lambda food: float(factor_at(food.schedule, "growth_rate", 0)))
+    begun = fed(config, own, growing)
+    if begun < founders:
+        rest = "the others starve" if floor else "the others starve to death"
+        found.append(f"Food is short from the start: it pays for {begun:,.0f} of {founders} founders; {rest}.")
+    lasting = fed(config, own, supply(config, own, lambda food: mean_factor(food.schedule, "growth_rate")))
+    if lasting > capacity and LONG_LIFE < best.lifetime < math.inf:
+        many = "any number of" if math.isinf(lasting) else f"{lasting:,.0f}"
+        found.append(
+            f"It can fill up and stand still: food pays for {many} agents, the capacity is {capacity}, and those who "
+            f"eat well live {best.lifetime:,.0f} steps. Then hardly anybody is born or dies, and selection fades."
+        )
+    return (*found, *_scheduled(config, species, best.energy), *_others(config, species), *_beyond(config, species))
+
+
+def _scheduled(config: Config, species: str, energy: float) -> Iterator[str]:
+    """What follows time: at which factor the numbers are, and what they are at the others."""
+    own = config.species[species]
+    low, high = factor_range(own.hazard.schedule, "scale")
+    if low < high:
+        ends = [scaled_hazard(hazard_of(own), factor) for factor in (low, high)]
+        lives = [_steps(float(expected_lifetime(end, energy))) for end in ends]
+        r0 = [float(reproduction_number(end, birth_of(own), energy)) if own.birth.kappa else 0.0 for end in ends]
+        which = _which(own.hazard.schedule, "scale")
+        yield (
+            f"The chance of death follows a schedule, from {low:g} to {high:g} times what is set: lives and R0 are "
+            f"those at {which}. Held at its lowest, it would give {lives[0]} and R0 {r0[0]:.2f} at energy {energy:g}; "
+            f"at its highest {lives[1]} and R0 {r0[1]:.2f}. What a life meets depends on when it begins."
+        )
+    grown = {kind: config.food[kind] for kind in feeding(config, own)}
+    bounds = {kind: factor_range(food.schedule, "growth_rate") for kind, food in grown.items()}
+    if any(low < high for low, high in bounds.values()):
+        parts = [
+            f"{kind} from {low:g} to {high:g} times what is set (here {_which(grown[kind].schedule, 'growth_rate')})"
+            for kind, (low, high) in bounds.items()
+            if low < high
+        ]
+        ends = (supply(config, own, partial(_extreme, which=which)) for which in (0, 1))
+        least, most = (fed(config, own, supplied) for supplied in ends)
+        yield f"Growth follows a schedule, {', '.join(parts)}: food pays for {least:,.0f} to {most:,.0f} agents."
+    for kind, food in grown.items():
+        low, high = factor_range(food.schedule, "capacity")
+        if low < high:
+            yield (
+                f"The capacity of {kind} follows a schedule, from {low:g} to {high:g} times what is set: how much "
+                "of what grows it cuts off depends on what is eaten, and is not forecast."
+            )
+
+
+def _extreme(food: FoodConfig, which: int) -> float:
+    """The smallest (0) or the largest (1) factor of a kind's growth."""
+    return factor_range(food.schedule, "growth_rate")[which]
+
+
+def _which(schedules: Mapping[str, ScheduleConfig], name: str) -> str:
+    """Which factor of a schedule the numbers are at."""
+    mean = mean_factor(schedules, name)
+    return f"the mean over a period, {mean:g}" if schedules[name].period else f"its end, {mean:g}, which stays"
+
+
+def _steps(lifetime: float) -> str:
+    return "an endless life" if math.isinf(lifetime) else f"a mean life of {lifetime:,.0f} steps"
+
+
+def _others(config: Config, species: str) -> Iterator[str]:
+    """What a species has to do with agents that it eats, that eat it, and that eat and live beside it."""
+    eaten = diet(config, config.species[species])
+    prey = [each for each in config.species if each in eaten]
+    if prey:
+        only = "" if gains(config, config.species[species]) else "no food, but "
+        what = f"{only}{' and '.join(prey)}"
+        yield f"It eats {what}: how many it catches depends on what agents learn, and is not forecast."
+    elif not gains(config, config.species[species]):
+        yield "It eats nothing: nobody gains energy."
+    eaters = [other for other, each in config.species.items() if species in diet(config, each)]
+    if eaters:
+        yield f"It is eaten by {' and '.join(eaters)}: lives here are without such deaths."
+    beside = [
+        other
+        for other, each in config.species.items()
+        if other != species and set(feeding(config, config.species[species])) & set(diet(config, each))
+    ]
+    if beside:
+        yield f"Its food is also eaten by {' and '.join(beside)}: what it pays for is shared with them."
+    if len(config.species) > 1:
+        yield "Places that agents of other species take are not counted: there is less room than this."
+
+
+def _beyond(config: Config, species: str) -> Iterator[str]:
+    """What enters births and deaths, but not this forecast."""
+    own = config.species[species]
+    if config.obstacle.count and config.obstacle.damage:
+        yield (
+            f"Obstacles cost {config.obstacle.damage:g} energy per step of touch: how often they are touched depends "
+            "on what agents learn, and is not forecast."
+        )
+    for name, store in own.store.items():
+        weight = store.hazard_weight if own.hazard.form == "age_energy" else 0.0
+        empty = weight * float(energy_hazard(own.hazard, 0.0)) * mean_factor(own.hazard.schedule, "scale")
+        if empty:
+            yield f"Without {name} the chance of death is {empty:.3g} per step higher; lives here are with enough."
+        if store.birth_weight:
+            held = f"full of {name}" if store.birth_weight > 0 else f"without {name}"
+            yield f"Births follow {name} too: R0 here is that of agents {held}."
+        if store.at_zero == "death":
+            yield f"Without {name} agents die at once: how often that happens is not forecast."
+    gated = [kind for kind in diet(config, own) if kind in config.food and config.food[kind].needs]
+    if gated:
+        yield f"Only agents that hold enough can eat {' and '.join(gated)}: the numbers here are as if all could."
+    if own.birth.mating == "pairs":
+        yield (
+            "Children need two parents that wait near one another: R0 counts draws, of which two make one child, and "
+            "the chance to meet is not forecast."
+        )
+    for name, store in own.stores.items():
+        if store.motor_threshold:
+            yield f"{name.capitalize()} weakens motors, so agents that hold it spend less; this is not forecast."
+
+
+def _gene_warnings(own: SpeciesConfig) -> Iterator[str]:
+    if own.genome.set:
+        yield (
+            f"Genes set {', '.join(own.genome.set)}: the numbers here are those of founders with mean genes; others "
+            "differ, and evolution moves them."
+        )
+
+
+def _rule_warnings(own: SpeciesConfig) -> Iterator[str]:
+    for what, rule in (("death", own.hazard.rule), ("birth", own.birth.rule)):
+        if rule:
+            yield (
+                f"The chance of {what} comes from a rule, {rule}: what it answers is not known before a run. The "
+                "numbers here are those of the formula that it replaces."
+            )
