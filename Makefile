@@ -46,7 +46,7 @@ sanitized: tools $(UV)
 test-long: sync
 	$(RUN) $(BROWSER) $(SITE) $(LONG) pyright
 	HEDON_NODES=10 HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=20 HEDON_DAMAGED=20 \
-	  HEDON_WORLDS=2000 HEDON_RECORDED=300 HEDON_SPOILED=300 \
+	  HEDON_WORLDS=2000 HEDON_RECORDED=300 HEDON_SPOILED=300 HEDON_INTAKE=200 \
 	  $(RUN) $(BROWSER) $(SITE) $(LONG) pytest --numprocesses auto --dist worksteal -m "long or repeated"
 	$(RUN) --group viewer python tests/matrix.py
 	$(RUN) python tests/soak.py

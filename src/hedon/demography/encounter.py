@@ -73,3 +73,22 @@ def encounter_rates(
         stays = touches | (since <= _PAUSE) | (step == _STRIDE)
         left[who[stays], what[stays]] = step
     return visits / (len(start) * np.maximum(counts, 1)[:, None] * (steps / BINS))
+
+
+def gaps(config: Config, own: SpeciesConfig, scene: Floats) -> float:
+    """Foods per food at a distance at which a body gets stuck between the two, out of reach of its mouth.
+
+    Food is solid. Two pieces stop a body that meets both at once; its mouth reaches neither if they are further apart
+    than the mouth is wide, and the body does not pass between them if they are nearer than it is.
+
+    Args:
+        config: For the size of food.
+        own: The species.
+        scene: Places that are taken at once [u], (foods, 2).
+    """
+    if len(scene) < 2:
+        return 0.0
+    wide = 2.0 * (own.body.radius + config.world.food_radius)
+    mouth = wide * math.sin(math.radians(min(own.sensor.mouth_spread, 90.0)))
+    tree = KDTree(scene)
+    return float(tree.count_neighbors(tree, wide) - tree.count_neighbors(tree, mouth)) / len(scene)

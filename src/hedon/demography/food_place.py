@@ -17,12 +17,13 @@ SCENES = 4
 """Times that the places of a kind are filled, to find how many there are."""
 _BATCH = 512  # places drawn at once
 _SAMPLE = 512  # places kept, at most
+_PARTS = 16  # of the time of a forecast, in each of which a center that drifts stands still
 
 Floats = NDArray[np.float64]
 
 
 def draw_food_places(
-    config: Config, food: FoodConfig, count: int, steps: int, rng: np.random.Generator, turn: int = 0
+    config: Config, food: FoodConfig, count: int, step: float, rng: np.random.Generator, turn: int = 0
 ) -> Floats:
     """Draws places as the engine does for new food; some may lie outside the arena.
 
@@ -30,7 +31,7 @@ def draw_food_places(
         config: For the arena.
         food: Kind with its law.
         count: Number of places.
-        steps: Time over which the places are drawn, for centers that drift [step].
+        step: When food appears there, for centers that drift [step].
         rng: Source of the draws.
         turn: Which center is used, of centers that take turns.
 
@@ -41,7 +42,7 @@ def draw_food_places(
     if law.form == "uniform":
         return rng.random((count, 2)) * size
     which = rng.integers(len(law.centers), size=count) if law.form == "mixture" else np.full(count, turn)
-    middle = np.array(law.centers)[which] + rng.random((count, 1)) * steps * np.array(law.drift)
+    middle = np.array(law.centers)[which] + step * np.array(law.drift)
     around = rng.uniform(-1, 1, (count, 2)) if law.form == "rectangle" else rng.normal(size=(count, 2))
     return np.clip(middle, 0.0, size) + np.array(law.sd) * around
 
@@ -95,11 +96,13 @@ class FoodPlaces:
             centers that take turns, around one of them.
         share: Share of the places drawn that lie within the arena.
         sample: Some of the places [u], (places, 2).
+        scene: Places that are taken at once [u], (foods, 2).
     """
 
     limit: float
     share: float
     sample: Floats
+    scene: Floats
 
 
 def food_places(config: Config, food: FoodConfig, steps: int, rng: np.random.Generator) -> FoodPlaces:
@@ -111,26 +114,45 @@ def food_places(config: Config, food: FoodConfig, steps: int, rng: np.random.Gen
         steps: Time for which the engine tries [step].
         rng: Source of the draws.
     """
-    radius, budget = config.world.food_radius, min(food.candidates * steps, TRIES)
     turns = len(food.placement.centers) if food.placement.form == "switching" else 1
-    scenes = [
-        throw(
-            lambda count, turn=scene % turns: draw_food_places(config, food, count, steps, rng, turn),
-            lambda places: is_within_walls(config, radius, places),
-            max(2 * radius, food.placement.spacing),
-            food.capacity,
-            tries=budget,
-            budget=budget,
-        )
-        for scene in range(SCENES)
-    ]
-    drawn = np.vstack([draw_food_places(config, food, 1024, steps, rng, scene % turns) for scene in range(SCENES)])
+    scenes = [_fill(config, food, steps, rng, scene % turns) for scene in range(SCENES)]
+    drawn = np.vstack(
+        [draw_food_places(config, food, 1024, scene / SCENES * steps, rng, scene % turns) for scene in range(SCENES)]
+    )
     sample = np.vstack(scenes)
     return FoodPlaces(
         limit=float(np.mean([len(placed) for placed in scenes])),
-        share=float(is_within_walls(config, radius, drawn).mean()),
+        share=float(is_within_walls(config, config.world.food_radius, drawn).mean()),
         sample=sample[rng.permutation(len(sample))[:_SAMPLE]],
+        scene=scenes[0],
     )
+
+
+def _fill(config: Config, food: FoodConfig, steps: int, rng: np.random.Generator, turn: int) -> Floats:
+    """Places of foods that grow and are not eaten: a center that drifts leaves them behind."""
+    radius, moves = config.world.food_radius, any(food.placement.drift)
+    reach = max(2 * radius, food.placement.spacing)
+    parts = _PARTS if moves else 1
+    budget = max(min(food.candidates * steps, TRIES) // parts, 1)
+    placed = np.empty((0, 2))
+    for part in range(parts):
+        grown = food.initial_count + food.growth_rate * steps * (part + 1) / parts
+        there = KDTree(placed) if len(placed) else None
+
+        def free(places: Floats, there: KDTree | None = there) -> NDArray[np.bool_]:
+            clear = is_within_walls(config, radius, places)
+            return clear if there is None else clear & (there.query(places)[0] >= reach)
+
+        more = throw(
+            lambda count, part=part: draw_food_places(config, food, count, steps * part / parts, rng, turn),
+            free,
+            reach,
+            (min(food.capacity, int(grown)) if moves else food.capacity) - len(placed),
+            tries=budget,
+            budget=budget,
+        )
+        placed = np.vstack([placed, more])
+    return placed
 
 
 def missing_at_start(config: Config, rng: np.random.Generator) -> str:

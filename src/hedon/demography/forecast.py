@@ -89,7 +89,7 @@ def forecast(config: Config, species: str | None = None) -> Forecast:
         force=fresh_force(own.motor),
         intake=intake,
         equilibria=settled,
-        warnings=(*_start_warnings(missing), *warnings(config, species, levels)),
+        warnings=(*_start_warnings(missing), *_dense_warnings(intake), *warnings(config, species, levels)),
     )
 
 
@@ -122,4 +122,14 @@ def _start_warnings(missing: list[str]) -> Iterator[str]:
         yield (
             f"A run may fail to start: in {len(missing)} of {_STARTS} sampled scenes there was no room for all that a "
             f"world begins with; {missing[0]}. {remedy}"
+        )
+
+
+def _dense_warnings(intake: tuple[KindIntake, ...]) -> Iterator[str]:
+    """Foods that lie so densely that how much of them is eaten is not known."""
+    dense = [each.kind for each in intake if each.dense]
+    if dense:
+        yield (
+            f"Pieces of {' and '.join(dense)} lie so close together that bodies get stuck between two of them, out of "
+            "reach of their mouths: how much of it is eaten is not forecast."
         )

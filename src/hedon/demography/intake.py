@@ -11,7 +11,7 @@ from hedon.config import Config
 from hedon.config.schema.food import FoodConfig
 from hedon.config.schema.species import SpeciesConfig
 from hedon.demography.balance import gains, need
-from hedon.demography.encounter import BINS, encounter_rates
+from hedon.demography.encounter import BINS, encounter_rates, gaps
 from hedon.demography.food_place import FoodPlaces, food_places
 from hedon.demography.life import birth_rate, hazard
 from hedon.demography.schedule import birth_of, factor_at, hazard_of, scaled_hazard
@@ -21,6 +21,7 @@ FORECAST_STEPS = 2048
 FACTOR = 3.0
 """Mean intakes of worlds agree with their forecasts within this factor: `tests/property/test_intake.py`."""
 _STRIDE = 8  # steps that are computed at once
+_STUCK = 1.0  # gaps per food above which too many bodies get stuck in them for a forecast
 
 Floats = NDArray[np.float64]
 
@@ -33,10 +34,11 @@ class KindIntake:
         kind: Name of the kind.
         places: Foods that can lie at once where the kind grows; around one center, if centers take turns.
         growth: Foods that grow [food/step].
-        low: Foods eaten at least, 1/`FACTOR` of the forecast [food/step].
+        low: Foods eaten at least, 1/`FACTOR` of the forecast, or 0 if foods are `dense` [food/step].
         eaten: Foods eaten [food/step].
         high: Foods eaten at most, `FACTOR` times the forecast, or all there are [food/step].
         present: Foods that lie there.
+        dense: Whether bodies get stuck between foods that their mouths do not reach: then what is eaten is not known.
     """
 
     kind: str
@@ -46,6 +48,7 @@ class KindIntake:
     eaten: float
     high: float
     present: float
+    dense: bool
 
 
 @dataclass(frozen=True)
@@ -56,10 +59,12 @@ class Ground:
         places: Of each kind of food.
         visits: By species, the visits per agent, place and step, (kinds, BINS) over equal parts of the time since
             birth; 0 for a kind that it does not eat.
+        gaps: By species, the gaps between foods that it gets stuck in, per food if all places are taken, (kinds,).
     """
 
     places: tuple[FoodPlaces, ...]
     visits: dict[str, Floats]
+    gaps: dict[str, Floats]
 
     def mean_visits(self, species: str, age: float) -> Floats:
         """Visits per agent, place and step of a population whose mean age is `age` [step], (kinds,).
@@ -93,7 +98,8 @@ def survey(config: Config, rng: np.random.Generator) -> Ground:
             each.sample if kind in eaten else each.sample[:0] for kind, each in zip(config.food, places, strict=True)
         ]
         visits[name] = encounter_rates(config, own, sites, FORECAST_STEPS, rng)
-    return Ground(places, visits)
+    stuck = {name: np.array([gaps(config, own, each.scene) for each in places]) for name, own in config.species.items()}
+    return Ground(places, visits, stuck)
 
 
 def first_intake(config: Config, species: str, ground: Ground, success: Floats) -> tuple[KindIntake, ...]:
@@ -134,25 +140,29 @@ def first_intake(config: Config, species: str, ground: Ground, success: Floats) 
         total += meals
         seen += foods.present
         held = _live(own, cohorts, i, held, float(energy_of @ meals), success)
-    steps, growth = FORECAST_STEPS, _growth(kinds)
-    found = []
-    for k, kind in enumerate(config.food):
-        if kind in value:
-            eaten, most = total[k] / steps, kinds[k].initial_count / steps + growth[k]
-            high = float(min(FACTOR * eaten, most))
-            limit = ground.places[k].limit
-            found.append(
-                KindIntake(
-                    kind, limit, growth[k], float(eaten / FACTOR), float(eaten), high, float(seen[k] * _STRIDE / steps)
-                )
-            )
-    return tuple(found)
+    return tuple(
+        _mean_intake(kind, food, ground.places[k].limit, total[k], seen[k] * _STRIDE, ground.gaps[species][k])
+        for k, (kind, food) in enumerate(config.food.items())
+        if kind in value
+    )
 
 
-def _growth(kinds: list[FoodConfig]) -> list[float]:
-    """Foods of each kind that grow, mean over the time of a forecast [food/step]."""
-    time = np.arange(FORECAST_STEPS)
-    return [food.growth_rate * float(factor_at(food.schedule, "growth_rate", time).mean()) for food in kinds]
+def _mean_intake(kind: str, food: FoodConfig, limit: float, total: float, seen: float, gaps: float) -> KindIntake:
+    """What was eaten of a kind, from sums over the time of a forecast."""
+    factor = factor_at(food.schedule, "growth_rate", np.arange(FORECAST_STEPS))
+    growth, eaten, present = food.growth_rate * float(factor.mean()), total / FORECAST_STEPS, seen / FORECAST_STEPS
+    most = food.initial_count / FORECAST_STEPS + growth
+    dense = gaps * present > _STUCK * limit
+    return KindIntake(
+        kind=kind,
+        places=limit,
+        growth=growth,
+        low=0.0 if dense else float(eaten) / FACTOR,
+        eaten=float(eaten),
+        high=most if dense else min(float(eaten) * FACTOR, most),
+        present=float(present),
+        dense=bool(dense),
+    )
 
 
 def _limits(kinds: list[FoodConfig], ground: Ground, eaten: Floats) -> Floats:

@@ -40,10 +40,8 @@ def test_a_world_that_has_no_room_for_its_first_foods_cannot_start() -> None:
     assert found.warnings[0].startswith("A run cannot start")
     assert "of 20 foods of the kind normal find a place" in found.warnings[0]
     assert found.intake == found.equilibria == ()
-    crowd = missing_at_start(
-        setting("population.initial_count=600", "population.capacity=600"), np.random.default_rng(1)
-    )
-    assert "of 600 founders of agent find a place" in crowd
+    apart = setting("food.normal.placement.spacing=150")
+    assert "of 20 foods of the kind normal find a place" in missing_at_start(apart, np.random.default_rng(1))
     assert missing_at_start(setting(), np.random.default_rng(1)) == ""
 
 
@@ -87,12 +85,12 @@ def test_places_follow_their_law(form: str) -> None:
     centers = "[[100, 100]]" if form in ("gaussian", "rectangle") else "[[100, 100], [300, 200]]"
     config = setting(f'food.normal.placement={{form="{form}", centers={centers}, sd=[6, 12], drift=[0.01, 0]}}')
     food, rng = config.food["normal"], np.random.default_rng(1)
-    drawn = draw_food_places(config, food, 20_000, 1000, rng)
+    drawn = draw_food_places(config, food, 20_000, 500, rng)
     shrink = 3.0 if form == "rectangle" else 1.0
-    spread = np.array([36 / shrink + 10**2 / 12, 144 / shrink])
+    spread = np.array([36 / shrink, 144 / shrink])
     middle = np.array([105.0, 100.0])
     if form == "mixture":
-        middle, spread = middle + [100, 50], spread + [100**2, 50**2]
+        middle, spread = middle + np.array([100, 50]), spread + np.array([100**2, 50**2])
     np.testing.assert_allclose(drawn.mean(axis=0), middle, atol=2.5)
     np.testing.assert_allclose(drawn.var(axis=0), spread, rtol=0.08)
     second = draw_food_places(config, food, 1000, 0, rng, turn=1) if form == "switching" else middle[None] + [200, 100]
@@ -139,12 +137,7 @@ def test_worlds_have_as_many_generations_as_forecast() -> None:
 
 
 def test_equilibria_stay_within_bounds() -> None:
-    for overrides in (
-        (),
-        ("food.normal.growth_rate=50.0",),
-        ("food.normal.growth_rate=0.0",),
-        ("energy.at_zero=death",),
-    ):
+    for overrides in (("food.normal.growth_rate=50.0",), ("food.normal.growth_rate=0.0", "energy.at_zero=death")):
         config = setting(*overrides)
         for each in forecast(config).equilibria:
             assert 0 <= each.alive <= config.species["agent"].population.capacity
