@@ -189,7 +189,7 @@ OPTIONS = {
     "replay-fault": ["--threads"],
     "report": ["--out"],
     "analyze": ["--only", "--out"],
-    "forecast": ["--fidelity", "--set"],
+    "forecast": ["--fidelity", "--set", "--steps"],
     "presets": [],
     "config show": ["--fidelity", "--set", "--path"],
     "config check": ["--fidelity", "--set"],

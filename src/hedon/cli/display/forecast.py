@@ -66,9 +66,9 @@ def _intake_table(found: Forecast) -> ResultTable:
     ]
     note = (
         f"Means over the first {FORECAST_STEPS:,} steps, in which agents hardly learn: foods that fit where their kind "
-        "grows, and how often random motion comes upon them. The mean over worlds lies within a factor of "
-        f"{FACTOR:g}; single worlds that eat few foods scatter more. Agents that have learned eat more, at most what "
-        "grows. Left out: contacts between agents, and obstacles."
+        "grows, and how often random motion comes upon them. In 19 of 20 settings the mean over worlds lies within a "
+        f"factor of {FACTOR:g}; single worlds that eat few foods scatter more. Agents that have learned eat more, at "
+        "most what grows. Left out: contacts between agents, and obstacles."
     )
     return make_table("intake", f"What is eaten in the first {FORECAST_STEPS:,} steps", rows, note)
 
