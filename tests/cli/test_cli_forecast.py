@@ -12,7 +12,7 @@ def test_demography_prints_tables_and_warnings() -> None:
     assert "! It can live without eating: R0 is 1.02 at energy 0" in result.output
     assert "stand still" in result.output
     assert "within a factor of 3" in " ".join(result.output.split())
-    assert "generations in 204,800 steps" in " ".join(result.output.split())
+    assert "Generations in 204,800 steps" in " ".join(result.output.split())
 
 
 def test_a_world_that_cannot_be_made_has_no_intake() -> None:

@@ -16,18 +16,34 @@ def need(own: SpeciesConfig) -> float:
 
 
 def gains(config: Config, own: SpeciesConfig) -> dict[str, float]:
-    """The energy that a species gains by a piece of each kind of food that it eats; negative for poison."""
+    """The energy that a species gains by a piece of each kind of food that it eats; negative for poison.
+
+    Args:
+        config: Settings of the world, for its foods.
+        own: The species.
+    """
     eaten = diet(config, own)
     return {kind: eaten[kind] * food.gives.get("energy", 0.0) for kind, food in config.food.items() if kind in eaten}
 
 
 def feeding(config: Config, own: SpeciesConfig) -> dict[str, float]:
-    """The energy that a species gains by a piece of each kind of food that feeds it."""
+    """The energy that a species gains by a piece of each kind of food that feeds it.
+
+    Args:
+        config: Settings of the world, for its foods.
+        own: The species.
+    """
     return {kind: energy for kind, energy in gains(config, own).items() if energy > 0}
 
 
 def supply(config: Config, own: SpeciesConfig, factor: Callable[[FoodConfig], float]) -> float:
-    """Energy of the food that a species eats that grows [energy/step], for a factor of each kind's growth."""
+    """Energy that grows as food that a species eats [energy/step].
+
+    Args:
+        config: Settings of the world, for its foods.
+        own: The species.
+        factor: Factor of the growth of a kind.
+    """
     return sum(
         config.food[kind].growth_rate * factor(config.food[kind]) * energy
         for kind, energy in feeding(config, own).items()
@@ -35,7 +51,13 @@ def supply(config: Config, own: SpeciesConfig, factor: Callable[[FoodConfig], fl
 
 
 def fed(config: Config, own: SpeciesConfig, supplied: float) -> float:
-    """Agents that a supply [energy/step] pays for; infinite if living costs nothing, NaN if it eats no food."""
+    """Agents that a supply pays for; infinite if living costs nothing, NaN if the species eats no food.
+
+    Args:
+        config: Settings of the world, for its foods.
+        own: The species.
+        supplied: Energy that grows as food [energy/step].
+    """
     if not gains(config, own):
         return math.nan
     needed = need(own)

@@ -17,7 +17,7 @@ BINS = 16
 """Parts of the time since birth, in each of which a rate is a mean."""
 _WALKERS = 512
 _STRIDE = 4  # steps between two looks at who touches what: an agent moves less than a unit of length in a step
-_PAUSE = 64  # a touch that follows another one within so many steps belongs to the same visit [step]
+_PAUSE = 64  # a touch that follows another one within this time belongs to the same visit [step]
 
 Floats = NDArray[np.float64]
 

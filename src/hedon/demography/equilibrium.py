@@ -49,7 +49,7 @@ def equilibria(config: Config, species: str, ground: Ground, success: Floats) ->
         config: Settings of the world.
         species: Whose population.
         ground: Where food lies and how often agents come by.
-        success: Chance that a birth finds a place with 0, 1, … agents, up to the capacity.
+        success: Chance that a birth finds a place with 0, 1, … agents, (capacity + 1,).
     """
     own = config.species[species]
     if not gains(config, own):
@@ -64,7 +64,7 @@ def equilibria(config: Config, species: str, ground: Ground, success: Floats) ->
 
 
 def _met(config: Config, species: str, ground: Ground) -> Callable[[float, float], float]:
-    """The energy that so many agents of a mean age find in a step without learning [energy/step]."""
+    """The energy that a number of agents of a mean age find in a step without learning [energy/step]."""
     own = config.species[species]
     value = gains(config, own)
     energy = np.array([value.get(kind, 0.0) for kind in config.food])

@@ -59,7 +59,7 @@ def throw(
     """Puts things one after another at the first place drawn that is free.
 
     Args:
-        draw: Draws so many places, (n, 2).
+        draw: Draws n places, (n, 2).
         free: Which places are free of everything else, (n,).
         reach: Least distance between two of the things [u].
         count: Number of things.

@@ -70,6 +70,10 @@ class Ground:
         """Visits per agent, place and step of a population whose mean age is `age` [step], (kinds,).
 
         Ages are taken as exponential, and agents beyond the last part of the time as those in it.
+
+        Args:
+            species: Name of the species.
+            age: Mean age [step].
         """
         ends = np.append(np.arange(BINS) * (FORECAST_STEPS / BINS), np.inf)
         return self.visits[species] @ -np.diff(np.exp(-ends / max(age, 1.0)))
@@ -112,7 +116,7 @@ def first_intake(config: Config, species: str, ground: Ground, success: Floats) 
         config: Settings of the world.
         species: Whose intake.
         ground: From `survey`.
-        success: Chance that a birth finds a place with 0, 1, … agents, up to the capacity.
+        success: Chance that a birth finds a place with 0, 1, … agents, (capacity + 1,).
 
     Returns:
         One for each kind of food that the species eats.
@@ -166,7 +170,7 @@ def _mean_intake(kind: str, food: FoodConfig, limit: float, total: float, seen: 
 
 
 def _limits(kinds: list[FoodConfig], ground: Ground, eaten: Floats) -> Floats:
-    """Foods of each kind that there is room for, when so many were eaten: centers take turns."""
+    """Foods of each kind that there is room for, after a number of foods were eaten: centers take turns."""
     limit = np.array([places.limit for places in ground.places])
     for k, food in enumerate(kinds):
         if food.placement.form == "switching":

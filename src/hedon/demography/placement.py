@@ -90,7 +90,16 @@ def _fill(
 
 
 def is_within_walls(config: Config, radius: float, places: Floats) -> NDArray[np.bool_]:
-    """Whether a disc lies within the outer polygon, which is convex, and clear of all inner walls."""
+    """Whether a disc lies within the outer polygon, which is convex, and clear of all inner walls.
+
+    Args:
+        config: the settings.
+        radius: of the disc [u].
+        places: centers [u], shape (n, 2).
+
+    Returns:
+        (n,).
+    """
     corners = np.array(outline(config.arena))
     along = np.roll(corners, -1, axis=0) - corners
     along /= np.linalg.norm(along, axis=1, keepdims=True)

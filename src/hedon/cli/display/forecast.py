@@ -81,7 +81,7 @@ def _generation_table(found: Forecast, steps: int) -> ResultTable:
             "energy": each.energy,
             "mean life [step]": each.lifetime,
             "generation [step]": each.generation,
-            f"generations in {steps:,} steps": steps / each.generation,
+            "generations": steps / each.generation,
         }
         for each in found.equilibria
     ]
@@ -90,7 +90,7 @@ def _generation_table(found: Forecast, steps: int) -> ResultTable:
         "agents eat far more than others, live longer and have most of the children: its generations are longer than "
         "those of equal shares, and at most those of parents that are always full."
     )
-    return make_table("generation", "How long a generation is", rows, note)
+    return make_table("generation", f"Generations in {steps:,} steps", rows, note)
 
 
 def forecast_group(config: Config, species: str, found: Forecast, steps: int) -> Group:
