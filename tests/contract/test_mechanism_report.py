@@ -16,7 +16,7 @@ from project_files import ROOT
 from rich.console import Console
 
 from hedon.analysis.agent.lifetime import mean_lifetime
-from hedon.analysis.gene.weight import world_weights
+from hedon.analysis.gene.weight import last_lived_step, last_living
 from hedon.analysis.world.budget import energy_budget
 from hedon.analysis.world.ledger import interval_residuals
 from hedon.analysis.world.population import extinct_step, history, last_generation, mean_alive, mean_energy
@@ -114,7 +114,7 @@ def test_the_table_at_the_end_has_every_species(run: Run) -> None:
     console.print(summary_table(summarize(run)))
     printed = console.export_text()
     for name in run.columns.species if run.columns.several else ():
-        assert f"{name}: weights of the agents born last" in printed
+        assert f"{name}: weights of those alive at the end" in printed
 
 
 def test_a_report_fits_what_each_species_eats(different: Run, tmp_path: Path) -> None:
@@ -144,7 +144,8 @@ def test_rows_of_several_species_are_refused_where_they_would_be_mixed(different
         lambda: interval_residuals(one, None),
         lambda: history(population, ()),
         lambda: regimes(one, mechanism_config(DIFFERENT)),
-        lambda: world_weights(agents, ("w_action",)),
+        lambda: last_living(agents, one.filter(pl.col("species") == "prey")),
+        lambda: last_lived_step(one),
     ):
         with pytest.raises(ArgumentError, match=r"rows are of several species \(.*\): choose one"):
             mixing()

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hedon.analysis.gene.weight import world_weights
+import polars as pl
+
+from hedon.analysis.gene.weight import last_living, weight_spreads
 from hedon.analysis.world.species import by_species
 from hedon.assay.landscape import AssayError
 from hedon.config.config import Config
@@ -49,17 +51,7 @@ def read_ends(path: Path, config: Config, species: str) -> list[End]:
     """
     name = brief(str(path))
     if path.is_dir():
-        run = open_run(path)
-        mine = by_species(run.agents(), run.columns).get(species if run.columns.several else run.columns.species[0])
-        if mine is None:
-            there = ", ".join(run.columns.species)
-            raise AssayError(f"--ends {name}: the run has no species {species} (there are {there})")
-        found = world_weights(mine, [gene for gene in run.reward_names if mine[gene].is_not_null().any()])
-        seeds = run.manifest.seeds
-        ends = [
-            End(f"{path.name}, seed {seeds[world]}", {gene: spread["mean"] or 0.0 for gene, spread in weights.items()})
-            for world, weights in found.items()
-        ]
+        ends = _run_ends(path, species, name)
     else:
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
@@ -71,6 +63,23 @@ def read_ends(path: Path, config: Config, species: str) -> list[End]:
         ends = ends or _study_ends(content, path, config)
     if not ends:
         raise AssayError(f"--ends {name}: has no mean weights of a world")
+    return ends
+
+
+def _run_ends(path: Path, species: str, name: str) -> list[End]:
+    run = open_run(path)
+    own = species if run.columns.several else run.columns.species[0]
+    lives, rows = (by_species(table, run.columns).get(own) for table in (run.agents(), run.population()))
+    if lives is None or rows is None:
+        there = ", ".join(run.columns.species)
+        raise AssayError(f"--ends {name}: the run has no species {species} (there are {there})")
+    genes = [gene for gene in run.reward_names if lives[gene].is_not_null().any()]
+    ends = []
+    for world, seed in enumerate(run.manifest.seeds):
+        living = last_living(*(table.filter(pl.col("world") == world) for table in (lives, rows)))
+        means = {gene: spread["mean"] for gene, spread in weight_spreads(living, genes).items()}
+        if living.height:
+            ends.append(End(f"{path.name}, seed {seed}", {gene: mean or 0.0 for gene, mean in means.items()}))
     return ends
 
 

@@ -14,7 +14,7 @@ import polars as pl
 
 from hedon.analysis.agent.food import food_per_agent_step, food_per_step
 from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
-from hedon.analysis.gene.weight import LAST_AGENTS, world_weights
+from hedon.analysis.gene.weight import LAST_AGENTS, last_living, weight_spreads
 from hedon.analysis.world.ledger import world_ledger
 from hedon.analysis.world.population import last_generation, mean_alive, mean_energy, run_tail
 from hedon.analysis.world.record import born_since, gone_step
@@ -173,8 +173,7 @@ def _world(run: Run, index: int, population: pl.DataFrame, fares: Mapping[str, S
 
 def _fares(run: Run, part: _Species) -> list[Fare]:
     """How a species fares in each world of a run."""
-    weights = world_weights(part.agents, part.kind.genes)
-    return [_fare(run, part, index, weights.get(index, {})) for index in range(len(run.manifest.seeds))]
+    return [_fare(run, part, index) for index in range(len(run.manifest.seeds))]
 
 
 def _born(run: Run, agents: pl.DataFrame) -> pl.DataFrame:
@@ -182,7 +181,7 @@ def _born(run: Run, agents: pl.DataFrame) -> pl.DataFrame:
     return born_since(agents, run.manifest.parent.step if run.manifest.parent else 0)
 
 
-def _fare(run: Run, part: _Species, index: int, weights: Mapping[str, Any]) -> Fare:
+def _fare(run: Run, part: _Species, index: int) -> Fare:
     # In one piece: sums must not depend on the parts in which rows were written.
     agents, population = (table.filter(pl.col("world") == index).rechunk() for table in (part.agents, part.population))
     tail, foods, prey = run_tail(population), part.kind.foods, part.kind.prey
@@ -204,7 +203,7 @@ def _fare(run: Run, part: _Species, index: int, weights: Mapping[str, Any]) -> F
         "eaten": {meal: population[f"eaten_{meal}"].sum() for meal in (*foods, *prey)},
         "mean_energy": mean_energy(tail),
         "generation": last_generation(population),
-        "weights": {name: weights.get(name, {"mean": None, "sd": None}) for name in part.kind.genes},
+        "weights": weight_spreads(last_living(agents, population), part.kind.genes),
         "ledger": world_ledger(population, agents),
     }
 

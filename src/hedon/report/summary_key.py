@@ -86,7 +86,7 @@ FARE_KEYS: dict[str, str] = {
     "eaten": "by food kind: foods eaten; and by species: agents eaten",
     "mean_energy": "energy of the living, mean over the last tenth of the steps made",
     "generation": "mean generation of the living at the end, or when somebody lived last",
-    "weights": "by genome column: mean and sd over the 5000 agents born last, dead or alive",
+    "weights": "by genome column: mean and sd over the living at the end, or when somebody lived last",
     "ledger": "sums of energy: initial, eaten, forgiven, basic, action, capped, lost, shared, final; and "
     "residual, the largest gap in an interval, only rounding where the ledger closes; where agents eat agents also "
     "hunted, gained by that, and with obstacles damage, charged for touching them",

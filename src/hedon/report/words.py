@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import polars as pl
 from scipy import stats
 
-from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import Conditions, WorldRecord
 from hedon.config.title import weight_title
@@ -46,11 +46,12 @@ def _answers(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable], r
         return [UNKNOWN]
     corrected = tests.filter(pl.col("p_holm").is_not_null() & (pl.col("test") != "marker"))  # another family of tests
     seconds = _seconds(worlds, runs)
+    who = _who(scores, worlds)
     told = [] if worlds[0].own.learning.policy == "ppo" else [UNLEARNED]
     for name in worlds[0].reward_names:
         row = corrected.filter((pl.col("weight") == name) & (pl.col("test") == "direction"))
         if not row.is_empty():
-            ended = _ended(name, scores.filter(pl.col("weight") == name))
+            ended = f"{who} {_ended(name, scores.filter(pl.col('weight') == name))}"
             told.append(f"{ended}: {_verdict(row.row(0, named=True), corrected.height, seconds)}")
     return told or [UNKNOWN]
 
@@ -61,19 +62,32 @@ def _rows(table: ResultTable | None, condition: str) -> pl.DataFrame:
     return table.rows.filter(pl.col("condition") == condition)
 
 
+def _who(scores: pl.DataFrame, worlds: Sequence[WorldRecord]) -> str:
+    """Whose weights are meant: how the sentence about each begins."""
+    extinct = any(world.extinct_step is not None for world in worlds)
+    last = ", or at the last record of a world that died out" if extinct else ""
+    return f"Among the agents alive at the end{last} (mean generation {_span(scores['generation'])}), the"
+
+
 def _ended(name: str, scores: pl.DataFrame) -> str:
-    """Where a weight of the agents born last ended, and how far chance alone carries it."""
+    """Where a weight ended, and how far chance alone carries it."""
     title, means = weight_title(name), scores["mean"]
     title += "," if "," in title else ""
     low, high = scores["null_low"].mean(), scores["null_high"].mean()
     chance = f"chance alone reaches {low:+z.2f} to {high:+z.2f}"
-    last = f"Of the agents born last (at most {LAST_AGENTS:,}), the mean {title}"
     if scores.height == 1:
-        return f"{last} is {means[0]:+z.2f}, and {chance}"
+        return f"mean {title} is {means[0]:+z.2f}, and {chance}"
     outside = scores.filter((pl.col("mean") < pl.col("null_low")) | (pl.col("mean") > pl.col("null_high"))).height
     lie = "lies" if outside == 1 else "lie"
     where = f"is {means.min():+z.2f} to {means.max():+z.2f} in {scores.height} worlds, on average"
-    return f"{last} {where} {means.mean():+z.2f}; {chance}, and {outside} of them {lie} outside"
+    return f"mean {title} {where} {means.mean():+z.2f}; {chance}, and {outside} of them {lie} outside"
+
+
+def _span(values: pl.Series) -> str:
+    """The range of some numbers, with one digit after the point below ten."""
+    known = values.to_numpy().astype(np.float64)
+    low, high = (f"{value:.1f}" if value < 10 else f"{value:.0f}" for value in (known.min(), known.max()))
+    return low if low == high else f"{low} to {high}"
 
 
 def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:

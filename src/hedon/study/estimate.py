@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.analysis.gene.drift import standard_drift
+from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.contrast import difference_interval, spread_ratio_interval
 from hedon.statistic.correction import holm
@@ -107,7 +108,8 @@ def _against_neutral(claim: Claim, scores: Floats, worlds: Sequence[WorldRecord]
         value, low, high = spread_interval(scores)
     else:
         value, low, high = distance_interval(scores)
-    neutral = np.array([d.score for w in worlds for d in standard_drift(w) if d.weight in w.neutral_names], np.float64)
+    drifts = [(world, drift) for world in worlds for drift in standard_drift(world, LAST_AGENTS)]
+    neutral = np.array([drift.score for world, drift in drifts if drift.weight in world.neutral_names], np.float64)
     if len(neutral) < 2:
         return Estimate(value, low, high)
     control = distance_interval(neutral)

@@ -11,6 +11,7 @@ from functools import partial
 from scipy import optimize
 
 from hedon.analysis import (
+    LAST_AGENTS,
     WorldRecord,
     food_per_step,
     last_generation,
@@ -59,7 +60,7 @@ def score(weight: str, world: WorldRecord) -> float | None:
         weight: a genome column.
         world: a world with its agents.
     """
-    return next((found.score for found in standard_drift(world) if found.weight == weight), None)
+    return next((found.score for found in standard_drift(world, LAST_AGENTS) if found.weight == weight), None)
 
 
 def lifetime_of_dead(world: WorldRecord) -> float | None:

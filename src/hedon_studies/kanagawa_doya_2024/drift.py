@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis import SEED, ResultTable, WorldDrift, drift_tests, make_table, standard_drift
+from hedon.analysis import LAST_AGENTS, SEED, ResultTable, WorldDrift, drift_tests, make_table, standard_drift
 from hedon.figure import NamedFigure, draw_scores
 from hedon.statistic import SHOWN_FROM
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, present, sentences
@@ -53,7 +53,10 @@ def make_drift(
         inputs: what there is.
     """
     worlds = present(conditions, inputs)
-    scores = {label: {w.seed: found for w in group if (found := standard_drift(w))} for label, group in worlds.items()}
+    scores = {
+        label: {w.seed: found for w in group if (found := standard_drift(w, LAST_AGENTS))}
+        for label, group in worlds.items()
+    }
     note = missing_note(inputs, conditions, scale)
     groups = {ALL: [found for by_seed in scores.values() for found in by_seed.values()]}
     groups |= {label: list(by_seed.values()) for label, by_seed in scores.items()}

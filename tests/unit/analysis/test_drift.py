@@ -90,7 +90,7 @@ def test_neutral_markers_are_called_selected_as_often_as_promised(tmp_path: Path
 
 def test_selection_is_found(tmp_path: Path) -> None:
     rng = np.random.default_rng(5)
-    options = {"intervals": 150, "worlds": 5, "selection": 2.0}
+    options = {"intervals": 120, "worlds": 5, "selection": 2.0}
     worlds = read_worlds([open_run(write_run(tmp_path / "run", snapshot=False, **options))])
     found = {
         (t.weight, t.test): t

@@ -5,7 +5,7 @@ import pytest
 
 from hedon.analysis.agent.food import food_per_agent_step, food_per_step
 from hedon.analysis.agent.lifetime import dead_agents, durations, mean_lifetime
-from hedon.analysis.gene.weight import last_agents, world_weights
+from hedon.analysis.gene.weight import last_agents, last_lived_step, last_living, weight_spreads
 from hedon.analysis.world.ledger import world_ledger
 from hedon.analysis.world.population import (
     extinct_step,
@@ -85,11 +85,24 @@ def test_food_where_nobody_died_or_lived() -> None:
 
 def test_weights_of_the_last_born() -> None:
     assert last_agents(AGENTS, 2)["agent_id"].to_list() == [2, 3]
-    spread = world_weights(AGENTS, ("w_normal", "w_action"), 2)[0]["w_normal"]
+
+
+def test_the_living_at_the_end_or_when_somebody_lived_last() -> None:
+    living = AGENTS.with_columns(death_step=pl.Series([100, 300, None, None], dtype=pl.Int64))
+    going = POPULATION.with_columns(alive=pl.Series([2, 4, 2, 2]))
+    assert last_living(living, going)["agent_id"].to_list() == [2, 3]
+    extinct = AGENTS.with_columns(death_step=pl.Series([100, 300, 310, 350]))
+    assert (last_lived_step(POPULATION), last_lived_step(POPULATION.head(0))) == (300, 0)
+    assert last_living(extinct, POPULATION)["agent_id"].to_list() == [2, 3]
+    assert last_living(AGENTS, POPULATION.head(0))["agent_id"].to_list() == [0, 1]  # nothing recorded: the founders
+
+
+def test_spreads_of_weights() -> None:
+    spread = weight_spreads(AGENTS.tail(2), ("w_normal", "w_action"))["w_normal"]
     assert spread["mean"] == 4
     assert spread["sd"] == pytest.approx(math.sqrt(2))
-    assert world_weights(AGENTS, ("w_normal",), 1)[0]["w_normal"]["sd"] is None
-    assert world_weights(AGENTS.head(0), ("w_normal",)) == {}
+    assert weight_spreads(AGENTS.tail(1), ("w_normal",))["w_normal"] == {"mean": 5.0, "sd": None}
+    assert weight_spreads(AGENTS.head(0), ("w_normal",))["w_normal"] == {"mean": None, "sd": None}
 
 
 def test_last_agents_are_counted_per_world() -> None:

@@ -31,7 +31,10 @@ def told(analysis: Analysis, score: float, means: tuple[float, ...] = (0.5,)) ->
     others = [
         other | {"test": test} for test in ("direction", "distance", "held", "distance", "held", "marker", "marker")
     ]
-    ends = [row | {"mean": mean, "null_low": -0.2, "null_high": 0.3} for mean in means]
+    ends = [
+        row | {"mean": mean, "null_low": -0.2, "null_high": 0.3, "generation": 8.26 + 2 * i}
+        for i, mean in enumerate(means)
+    ]
     tables = {
         "drift": make_table("drift", "", [row | outcome, *others]),
         "drift_world": make_table("drift_world", "", ends),
@@ -41,8 +44,8 @@ def told(analysis: Analysis, score: float, means: tuple[float, ...] = (0.5,)) ->
 
 def test_a_weight_beyond_chance_is_selected(analysis):
     assert told(analysis, 3.5) == (
-        "Of the agents born last (at most 5,000), the mean weight of normal food is +0.50, and chance alone reaches "
-        "-0.20 to +0.30: selected for (p = 0.0028, corrected for 6 tests against drift)."
+        "Among the agents alive at the end (mean generation 8.3), the mean weight of normal food is +0.50, and chance "
+        "alone reaches -0.20 to +0.30: selected for (p = 0.0028, corrected for 6 tests against drift)."
     )
     assert "selected against (" in told(analysis, -3.5, (-0.5,))
 
@@ -57,7 +60,8 @@ def test_a_weight_that_may_have_drifted_says_how_long_would_decide(analysis):
 
 def test_several_worlds_tell_how_many_went_beyond_chance(analysis):
     said = told(analysis, 2.0, (0.5, 0.1, -0.4))
-    assert "is -0.40 to +0.50 in 3 worlds, on average +0.07" in said
+    assert "(mean generation 8.3 to 12), the mean weight of normal food is -0.40 to +0.50 in 3 worlds" in said
+    assert "on average +0.07" in said
     assert "and 2 of them lie outside: selected for" in said
     said = told(analysis, 2.0, (0.5, -0.001, 0.2))
     assert "is +0.00 to +0.50 in 3 worlds" in said, "a zero has no minus sign"
@@ -85,9 +89,9 @@ def test_the_report_begins_with_the_answer_and_its_picture(tmp_path: Path, analy
     for name, line in zip(("w_normal", "w_action"), said, strict=True):
         assert f"{rows.filter(pl.col('weight') == name)['mean'][0]:+z.2f}" in line
     page, text = (files[name].read_text(encoding="utf-8") for name in ("report.html", "report.md"))
-    assert re.search(r"what evolved\?</h2>\s*<ul class=\"answers\"><li>Of the agents", page)
+    assert re.search(r"what evolved\?</h2>\s*<ul class=\"answers\"><li>Among the agents", page)
     order = [
         text.index(part)
-        for part in ("- Of the agents born last", "figures/history.png", "figures/weights.png", "## Tables")
+        for part in ("- Among the agents alive at the end", "figures/history.png", "figures/weights.png", "## Tables")
     ]
     assert order == sorted(order)

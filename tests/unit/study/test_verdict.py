@@ -153,7 +153,7 @@ def test_recorded_neutral_genes_that_do_not_drift_as_walks_do_decide_nothing(
     worlds: list[WorldRecord], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     strange = [WorldDrift("neutral_1", 0.0, 0.0, -1, 0, 1, 3.0, 0.01)]
-    monkeypatch.setattr("hedon.study.estimate.standard_drift", lambda _: strange)
+    monkeypatch.setattr("hedon.study.estimate.standard_drift", lambda *_: strange)
     found = judge(claim([0.1] * 12, "distance", high=1.5), "c", worlds)
     assert (found.verdict, found.reason.endswith("which differ from the walks")) == ("undecided", True)
 

@@ -1,17 +1,20 @@
 """The course of a world's mean weights, beside those of neutral genes of the same pedigree."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.analysis.descent.genealogy import depth, genealogy, living_at
+from hedon.analysis.descent.genealogy import depth, living_at
 from hedon.analysis.descent.walk import mutation_law, neutral_courses
-from hedon.analysis.world.record import WorldRecord, shares_noise
+from hedon.analysis.gene.pedigree import walked_pedigree
+from hedon.analysis.world.record import WorldRecord, generator
 
 WALKS = 500
 """Neutral courses per world: the smallest chance that they tell from zero is 1 in 500."""
+_INTERVALS = 100  # into which the longest world of a condition is cut
 
 Floats = NDArray[np.float64]
 
@@ -48,12 +51,11 @@ def world_course(
         walks: neutral genes per course.
 
     Returns:
-        None where there is no pedigree, or one with gaps, or nobody lives at the end of the first interval, or the
-        founders come from a table, whose law the neutral genes do not know, or noise is fixed by the number of a birth
-        among those of several species.
+        None where no neutral gene can walk down the pedigree (see `walked_pedigree`), or nobody lives at the end of
+        the first interval.
     """
-    tree = genealogy(world.agents)
-    if tree.gaps or not tree.size or world.config.world.founders or shares_noise(world):
+    tree = walked_pedigree(world)
+    if tree is None:
         return None
     # A small excess, or rounding could cost the last time.
     times = np.arange(0.0, world.last_step * (1.0 + 1e-9), interval).astype(np.int64)
@@ -74,3 +76,27 @@ def world_course(
         means,
         {name: null[law] for name, law in laws.items()},
     )
+
+
+_KNOWN: WeakKeyDictionary[WorldRecord, tuple[float, WorldCourse | None]] = WeakKeyDictionary()
+
+
+def standard_interval(worlds: Sequence[WorldRecord]) -> float:
+    """Time between two values of the courses of one condition [step]: a hundredth of its longest world."""
+    return max(max(world.last_step for world in worlds) / _INTERVALS, 1.0)
+
+
+def standard_courses(worlds: Sequence[WorldRecord]) -> list[WorldCourse | None]:
+    """The courses of the worlds of one condition, at the same times; made once, since walks take long.
+
+    Args:
+        worlds: At least one.
+
+    Returns:
+        For each world what `world_course` gives with the standard interval and the world's own source of chance.
+    """
+    interval = standard_interval(worlds)
+    for world in worlds:
+        if _KNOWN.get(world, (None, None))[0] != interval:
+            _KNOWN[world] = interval, world_course(world, interval, generator(world))
+    return [_KNOWN[world][1] for world in worlds]

@@ -1,6 +1,6 @@
 """Did a weight go further, or more in one direction, than drift alone would have carried it?
 
-Two controls. The *walk*: in each world, the mean weight of the agents born last is compared with neutral genes that
+Two controls. The *walk*: in each world, the mean weight of those alive at the end is compared with neutral genes that
 mutate along the same pedigree (`descent.walk`), and its score among them is tested as `statistic.drift` says. The
 *marker*: whether a weight strays further from its start than the recorded neutral markers of the same worlds do.
 """
@@ -11,12 +11,14 @@ from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import stats
 
-from hedon.analysis.descent.genealogy import genealogy
+from hedon.analysis.descent.genealogy import Genealogy, depth, living_at
 from hedon.analysis.descent.walk import WALKS, mutation_law, neutral_means
-from hedon.analysis.gene.weight import LAST_AGENTS
-from hedon.analysis.world.record import WorldRecord, generator, shares_noise
+from hedon.analysis.gene.pedigree import walked_pedigree
+from hedon.analysis.gene.weight import last_lived_step
+from hedon.analysis.world.record import WorldRecord, generator
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import ScoreTest, rank_score, score_tests, sign_flip_p
 from hedon.statistic.interval import mean_bounds
@@ -31,10 +33,11 @@ class WorldDrift:
     Attributes:
         weight: genome column.
         start: mean of the founders' law.
-        mean: of the agents born last.
+        mean: of the agents that are compared.
         null_low, null_median, null_high: the walks' median, and the bounds that 95 % of them lie between.
         score: standard normal score of the mean's rank among the walks.
         p: two-sided chance of such a rank under drift.
+        generation: mean generation of the agents that are compared.
     """
 
     weight: str
@@ -45,9 +48,10 @@ class WorldDrift:
     null_high: float
     score: float
     p: float
+    generation: float = NAN
 
 
-_KNOWN: WeakKeyDictionary[WorldRecord, list[WorldDrift]] = WeakKeyDictionary()
+_KNOWN: WeakKeyDictionary[WorldRecord, dict[int | None, list[WorldDrift]]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True)
@@ -66,43 +70,57 @@ class DriftTest(ScoreTest):
     weight: str = ""
 
 
-def world_drift(world: WorldRecord, rng: np.random.Generator, walks: int = WALKS) -> list[WorldDrift]:
+def world_drift(
+    world: WorldRecord, rng: np.random.Generator, walks: int = WALKS, last: int | None = None
+) -> list[WorldDrift]:
     """Compares each weight of a world with neutral walks along its pedigree.
 
     Args:
         world: a world with its agents.
         rng: source of chance for the walks.
         walks: how many neutral genes walk for each law of mutation.
+        last: compares the mean of as many agents that were born last, dead or alive, as the paper does with 5000; by
+            default that of the living at the end, as `last_living` has them.
 
     Returns:
-        A result for each weight. An empty list where there is no pedigree, or one with gaps, whose walks would have no
-        beginning; where the founders come from a table, whose law the walks do not know; where children have two
-        parents; and where noise is fixed by the number of a birth among those of several species.
+        A result for each weight. An empty list where no neutral gene can walk down the pedigree (see
+        `walked_pedigree`).
     """
-    tree = genealogy(world.agents)
-    if tree.gaps or not tree.size or world.config.world.founders or world.own.birth.mating == "pairs":
+    tree = walked_pedigree(world)
+    sample = np.array([], np.int64) if tree is None else _sample(tree, world, last)
+    if tree is None or not len(sample):
         return []
-    if shares_noise(world):
-        return []
-    last = np.lexsort((np.arange(tree.size), tree.birth))[-LAST_AGENTS:]
+    generation = float(depth(tree)[sample].mean())
     laws = {name: mutation_law(world.config, world.gene(name)) for name in world.weight_names}
-    null = {law: neutral_means(tree, last, law, rng, walks) for law in dict.fromkeys(laws.values())}
+    null = {law: neutral_means(tree, sample, law, rng, walks) for law in dict.fromkeys(laws.values())}
     results = []
     for name, law in laws.items():
-        start = law.mean
-        mean = float(world.agents[name].to_numpy()[last].mean(dtype=np.float64))
-        low, median, high = np.quantile(null[law], (0.025, 0.5, 0.975))
+        mean = float(world.agents[name].to_numpy()[sample].mean(dtype=np.float64))
+        low, median, high = (float(bound) for bound in np.quantile(null[law], (0.025, 0.5, 0.975)))
         score = rank_score(mean, null[law])
         p = float(2.0 * stats.norm.sf(abs(score)))
-        results.append(WorldDrift(name, start, mean, float(low), float(median), float(high), score, p))
+        results.append(WorldDrift(name, law.mean, mean, low, median, high, score, p, generation))
     return results
 
 
-def standard_drift(world: WorldRecord) -> list[WorldDrift]:
-    """`world_drift` with the world's own source of chance; made once for each world, since walks take long."""
-    if world not in _KNOWN:
-        _KNOWN[world] = world_drift(world, generator(world))
-    return _KNOWN[world]
+def standard_drift(world: WorldRecord, last: int | None = None) -> list[WorldDrift]:
+    """`world_drift` with the world's own source of chance; made once for each world, since walks take long.
+
+    Args:
+        world: a world with its agents.
+        last: which agents are compared, as in `world_drift`.
+    """
+    known = _KNOWN.setdefault(world, {})
+    if last not in known:
+        known[last] = world_drift(world, generator(world), last=last)
+    return known[last]
+
+
+def _sample(tree: Genealogy, world: WorldRecord, last: int | None) -> NDArray[np.int64]:
+    """Positions of the agents that are compared."""
+    if last is None:
+        return living_at(tree, last_lived_step(world.population))
+    return np.lexsort((np.arange(tree.size), tree.birth))[-last:]
 
 
 def drift_tests(

@@ -1,4 +1,4 @@
-"""Which rewards evolved? The neutral markers tell how much of it is drift."""
+"""Which rewards evolved? The mean weights of those who live at the end, and of the paper's 5000 agents born last."""
 
 from collections.abc import Sequence
 
@@ -7,14 +7,75 @@ import polars as pl
 from hedon.analysis.world.record import WorldRecord
 from hedon.analysis.world.species import require_one_species
 
-LAST_AGENTS = 5000  # whose weights the paper shows
+LAST_AGENTS = 5000
+"""Agents per world whose weights the paper shows: those born last, dead or alive."""
 
 Spread = dict[str, float | None]
 """Mean and standard deviation of a weight among some agents."""
 
 
+def last_lived_step(population: pl.DataFrame) -> int:
+    """The end of the records of one world, or the last of their rows at which somebody lived [step].
+
+    Args:
+        population: Rows of the table `population` of one world and species; 0 where there are none.
+
+    Raises:
+        ArgumentError: The rows are of several species.
+    """
+    require_one_species(population)
+    return int(population.filter(pl.col("alive") > 0)["step"].to_numpy().max(initial=0))
+
+
+def last_living(agents: pl.DataFrame, population: pl.DataFrame) -> pl.DataFrame:
+    """The agents of one world whose weights tell what evolved: those who live at the end of its records.
+
+    Of a world that died out, those who lived at the last row of its population at which anybody did, so that these are
+    the agents at whom a curve of the living ends.
+
+    Args:
+        agents: Rows of the table `agents` of one world and species.
+        population: Its rows of the table `population`.
+
+    Returns:
+        The rows of these agents, in the order of `agents`.
+
+    Raises:
+        ArgumentError: The rows are of several species.
+    """
+    require_one_species(agents)
+    end = last_lived_step(population)
+    died_later = pl.col("death_step").is_null() | (pl.col("death_step") > end)
+    return agents.filter((pl.col("birth_step") <= end) & died_later)
+
+
+def weight_spreads(agents: pl.DataFrame, names: Sequence[str]) -> dict[str, Spread]:
+    """How weights are spread among some agents.
+
+    Args:
+        agents: Rows of the table `agents`.
+        names: Genome columns.
+
+    Returns:
+        By name: mean, None where there are no agents, and sd, None where there are fewer than two.
+    """
+    return {name: _spread(agents[name]) for name in names}
+
+
+def end_mean(weight: str, world: WorldRecord) -> float | None:
+    """Mean of a weight over `last_living`; None without agents.
+
+    Args:
+        weight: A genome column.
+        world: A world with its agents.
+    """
+    return _spread(last_living(world.agents, world.population)[weight])["mean"]
+
+
 def last_agents(agents: pl.DataFrame, count: int = LAST_AGENTS) -> pl.DataFrame:
-    """The agents of each world that were born last, dead or alive, by world and birth.
+    """The agents of each world that were born last, dead or alive, by world and birth: the paper's measure.
+
+    In a short world these are all that ever lived, its founders among them; see `last_living`.
 
     Args:
         agents: table `agents`.
@@ -34,24 +95,7 @@ def last_mean(weight: str, world: WorldRecord) -> float | None:
         weight: a genome column.
         world: a world with its agents.
     """
-    values = last_agents(world.agents)[weight].to_numpy()
-    return float(values.mean(dtype=float)) if len(values) else None
-
-
-def world_weights(agents: pl.DataFrame, names: Sequence[str], count: int = LAST_AGENTS) -> dict[int, dict[str, Spread]]:
-    """Weights of the agents born last, per world.
-
-    Args:
-        agents: table `agents`.
-        names: genome columns.
-        count: agents per world.
-
-    Returns:
-        By world and name: mean, None where there are no agents, and sd, None where there are fewer than two. A world
-        without agents is missing.
-    """
-    groups = last_agents(agents, count).partition_by("world", as_dict=True)
-    return {int(world): {name: _spread(group[name]) for name in names} for (world,), group in groups.items()}
+    return _spread(last_agents(world.agents)[weight])["mean"]
 
 
 def _spread(values: pl.Series) -> Spread:

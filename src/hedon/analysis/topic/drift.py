@@ -6,16 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from hedon.analysis.gene.course import WorldCourse, world_course
+from hedon.analysis.gene.course import WorldCourse, standard_courses
 from hedon.analysis.gene.drift import drift_tests, standard_drift
-from hedon.analysis.gene.weight import last_mean
+from hedon.analysis.gene.weight import end_mean
 from hedon.analysis.result import ResultTable, make_table
-from hedon.analysis.world.record import SEED, Conditions, generator, labels, with_roles
+from hedon.analysis.world.record import SEED, Conditions, labels, with_roles
 from hedon.statistic.correction import holm
 from hedon.statistic.mode import ENOUGH_WORLDS, modes
 from hedon.statistic.reversion import Reversion, reversion
-
-_INTERVALS = 100  # into which the longest world of a condition is cut
 
 
 def drift(conditions: Conditions) -> list[ResultTable]:
@@ -36,7 +34,7 @@ def drift(conditions: Conditions) -> list[ResultTable]:
         "reward weights and tests of one control; neutral markers are there as a check."
     )
     return [
-        make_table("drift", "Weights of the agents born last against drift", with_roles(rows, conditions), note),
+        make_table("drift", "Weights of those alive at the end against drift", with_roles(rows, conditions), note),
         make_table("drift_world", "Weights against drift, world by world", world_rows, shown=False),
     ]
 
@@ -45,9 +43,8 @@ def reversion_topic(conditions: Conditions) -> list[ResultTable]:
     """Mean reversion of each weight, over the worlds of a condition and in each of them."""
     rows, world_rows = [], []
     for condition, worlds in conditions.items():
-        interval = max(max(world.last_step for world in worlds) / _INTERVALS, 1.0)
-        known = {world: world_course(world, interval, generator(world)) for world in worlds}
-        courses = {world: course for world, course in known.items() if course is not None}
+        known = zip(worlds, standard_courses(worlds), strict=True)
+        courses = {world: course for world, course in known if course is not None}
         for world, course in courses.items():
             world_rows += [labels(world) | row for row in _rows([course], world.weight_names)]
         found = _rows(list(courses.values()), worlds[0].weight_names)
@@ -72,7 +69,7 @@ def mode(conditions: Conditions) -> list[ResultTable]:
     rows = []
     for condition, worlds in conditions.items():
         for name in worlds[0].weight_names:
-            means = [last_mean(name, world) for world in worlds if world.extinct_step is None]
+            means = [end_mean(name, world) for world in worlds if world.extinct_step is None]
             found = modes(np.array([mean for mean in means if mean is not None], np.float64))
             rows.append({"condition": condition, "weight": name} | asdict(found))
     note = (

@@ -7,7 +7,6 @@ from typing import Any
 from rich.console import Group
 from rich.text import Text
 
-from hedon.analysis.gene.weight import LAST_AGENTS
 from hedon.cli.display.table import PrintedTable
 from hedon.report.table import NOTHING, format_number
 from hedon.statistic.interval import SHOWN_FROM
@@ -160,7 +159,7 @@ def _weights(summary: Mapping[str, Any], part: _Part) -> PrintedTable:
         cells = [f"{_weight(spread['mean'])} ± {_weight(spread['sd'])}" for spread in spreads]
         rows.append([str(world["seed"]), *cells])
     of = f"{part.species}: " if part.species else ""
-    title = f"{of}weights of the agents born last (at most {LAST_AGENTS}), mean ± sd"
+    title = f"{of}weights of those alive at the end, mean ± sd"
     dim = [i for i, fare in enumerate(part.fares) if fare["extinct"]]
     return PrintedTable(("seed", *part.shown), rows, title=title, dim=dim)
 
