@@ -6,11 +6,16 @@ from .descent.genealogy import genealogy as genealogy
 from .descent.walk import birth_number as birth_number
 from .descent.walk import is_mutated as is_mutated
 from .descent.walk import mutation_law as mutation_law
+from .gene.band import DriftBand as DriftBand
+from .gene.band import drift_bands as drift_bands
+from .gene.band import drift_genes as drift_genes
 from .gene.drift import WorldDrift as WorldDrift
 from .gene.drift import drift_tests as drift_tests
 from .gene.drift import standard_drift as standard_drift
 from .gene.weight import LAST_AGENTS as LAST_AGENTS
+from .gene.weight import end_mean as end_mean
 from .gene.weight import last_agents as last_agents
+from .gene.weight import last_living as last_living
 from .gene.weight import last_mean as last_mean
 from .response import RESPONSES as RESPONSES
 from .response import Common as Common

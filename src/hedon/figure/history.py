@@ -1,13 +1,14 @@
 """How did the reward weights change over time, and how much of it is drift?"""
 
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import polars as pl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from hedon.analysis.gene.band import DriftBand
 from hedon.analysis.world.population import history
 from hedon.config.color import NEUTRAL_COLOR, weight_colors
 from hedon.config.title import weight_title
@@ -24,8 +25,6 @@ _MIN_HALF_RANGE = 0.5  # of the weight axis, so that noise of the founders does 
 _WIDEST = 10.0  # figure [inch]
 _ROOMY = 4  # columns whose titles fit in full size
 _POINTS = 200  # intervals of the time axis
-_MANY = 8  # courses of neutral genes from which on their range is shaded behind the weights
-_RANGE = (0.025, 0.975)  # quantiles of these
 
 
 @dataclass(frozen=True)
@@ -37,12 +36,15 @@ class HistoryRow:
         title: what the setting is called.
         remark: what else must be known of it.
         extinct: worlds that died out; where it is not known, those that end before others are taken for such.
+        drift: by genome column, where drift alone would have it, as `drift_bands` gives it; genes without a band are
+            said to have no control.
     """
 
     population: pl.DataFrame
     title: str = ""
     remark: str = ""
     extinct: Container[int] | None = None
+    drift: Mapping[str, DriftBand] = field(default_factory=dict)
 
 
 def draw_histories(
@@ -54,9 +56,8 @@ def draw_histories(
     """One row per setting, one column per reward weight and for the neutral genes; the same axes throughout.
 
     Thin lines are means over the living of one world, thick lines are means over worlds with their 95 %
-    interval. A cross ends the line of a world that died out. Behind the weights is shaded where 95 % of all
-    neutral genes of all worlds are at that time. Each neutral gene of each world is a line of the last column,
-    which the axes may cut off.
+    interval. A cross ends the line of a world that died out. Shaded behind each is where drift alone would have it in
+    95 % of worlds. Each neutral gene of each world is a line of the last column, which the axes may cut off.
 
     Args:
         settings: from top to bottom, at least one.
@@ -76,14 +77,15 @@ def draw_histories(
         reach, size = 0.0, 10.0 if columns <= _ROOMY else 8.0
         for setting, panels in zip(settings, grid, strict=True):
             rows = history(setting.population, (), [*shown, *neutral_names], _POINTS, end)
-            reach = max(reach, *(_draw_range(axes, rows, neutral_names, end) for axes in panels[: len(shown)]))
             for axes, (name, (title, color)) in zip(panels, shown.items(), strict=False):
                 draw_zero_line(axes)
+                reach = max(reach, _draw_band(axes, setting.drift.get(name), rows, end))
                 draw_traces(axes, rows, f"{name}_mean", color, extinct=setting.extinct, end=end)
                 if setting is settings[0]:
                     axes.set_title(title, color=color, fontsize=size)
             if neutral_names:
                 draw_zero_line(panels[-1])
+                _draw_band(panels[-1], setting.drift.get(neutral_names[0]), rows, end)
                 _draw_neutral(panels[-1], rows, neutral_names, end)
                 if setting is settings[0]:
                     panels[-1].set_title("neutral genes", color=NEUTRAL_COLOR, fontsize=size)
@@ -101,19 +103,16 @@ def draw_histories(
     return figure
 
 
-def _draw_range(axes: Axes, rows: pl.DataFrame, neutral_names: Sequence[str], end: float) -> float:
-    """Shades where most neutral genes are; returns how far that reaches from 0."""
-    courses = rows.unpivot([f"{name}_mean" for name in neutral_names], index=["bin", "step"]).drop_nulls("value")
-    low, high = (pl.col("value").quantile(q, "linear") for q in _RANGE)
-    bands = courses.group_by("bin", maintain_order=True).agg(
-        pl.col("step").max(), low.alias("low"), high.alias("high"), pl.len()
-    )
-    bands = bands.filter(pl.col("len") >= _MANY).sort("step")
-    if bands.is_empty():
+def _draw_band(axes: Axes, band: DriftBand | None, rows: pl.DataFrame, end: float) -> float:
+    """Shades where drift alone would have a gene, or says that this is not known; returns how far it is from 0."""
+    if rows.is_empty():
+        return 0.0
+    if band is None:
+        axes.annotate("no band of drift", (0.98, 0.03), xycoords="axes fraction", ha="right", color=MUTED, fontsize=8.0)
         return 0.0
     unit, _ = step_unit(max(last_step(rows), end))
-    axes.fill_between(bands["step"] / unit, bands["low"], bands["high"], color=NEUTRAL_COLOR, alpha=0.15, linewidth=0)
-    return float(np.abs(bands.select("low", "high").to_numpy()).max())
+    axes.fill_between(band.step / unit, band.low, band.high, color=NEUTRAL_COLOR, alpha=0.15, linewidth=0)
+    return float(np.abs([band.low, band.high]).max())
 
 
 def _draw_neutral(axes: Axes, rows: pl.DataFrame, neutral_names: Sequence[str], end: float) -> None:

@@ -1,7 +1,7 @@
-"""Which combinations of rewards evolved? Weights of the agents that were born last, one against another."""
+"""Which combinations of rewards evolved? Weights of agents, one against another, and where drift would have them."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 import polars as pl
@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
-from hedon.analysis.gene.weight import LAST_AGENTS, last_agents
 from hedon.config.color import NEUTRAL_COLOR
 from hedon.config.title import weight_title
 from hedon.figure.style import (
@@ -26,6 +26,8 @@ from hedon.figure.style import (
     step_unit,
     styled,
 )
+
+Floats = NDArray[np.float64]
 
 _MIN_HALF_RANGE = 1.0  # of the weight axes
 _SHARE_WITHIN = 0.98  # of the agents, in each weight; the few beyond would squeeze all others
@@ -46,12 +48,15 @@ class WeightGroup:
         panels: genome columns along the x and the y axis of each panel.
         title: what the setting is called.
         remark: what else must be known of it.
+        drift: by genome column, what such agents would have of it if it had drifted, as `drift_genes` gives it,
+            (draws,); genes without any are drawn without a control.
     """
 
     agents: pl.DataFrame
     panels: Sequence[tuple[str, str]]
     title: str = ""
     remark: str = ""
+    drift: Mapping[str, Floats] = field(default_factory=dict)
 
     @property
     def weights(self) -> list[str]:
@@ -64,34 +69,30 @@ def against_action(reward_names: Sequence[str]) -> list[tuple[str, str]]:
     return [(name, "w_action") for name in reward_names if name != "w_action"]
 
 
-def draw_weights(
-    agents: pl.DataFrame, reward_names: Sequence[str], neutral_names: Sequence[str], count: int = LAST_AGENTS
-) -> Figure:
-    """The weights of the agents of one setting that were born last: each against that of action.
+def draw_weights(agents: pl.DataFrame, reward_names: Sequence[str], drift: Mapping[str, Floats]) -> Figure:
+    """The weights of some agents of one setting: each against that of action.
 
     Args:
-        agents: table `agents`.
+        agents: rows of the table `agents`: those that are shown.
         reward_names: genome columns that have an effect.
-        neutral_names: the other genome columns.
-        count: agents per world.
+        drift: by genome column, what such agents would have of it if it had drifted; see `WeightGroup`.
     """
     panels = against_action(reward_names)
     if not panels:
         return draw_message("no weight but that of action")
-    return draw_weight_groups([WeightGroup(last_agents(agents, count), panels)], neutral_names)
+    return draw_weight_groups([WeightGroup(agents, panels, drift=drift)])
 
 
-def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[str]) -> Figure:
+def draw_weight_groups(groups: Sequence[WeightGroup]) -> Figure:
     """The panels of each setting side by side, a point per agent.
 
     Colors tell worlds apart, or the time of birth where there is one world in all. The curves beyond the axes are
-    the distributions over all agents, with that of the first neutral marker behind them in gray.
+    the distributions over all agents; outlined in gray, what drift alone would make of the weight.
     All panels have the same axes, which reach as far as nearly all agents of each setting; crosses at their edge
     stand for those beyond.
 
     Args:
         groups: from left to right, at least one.
-        neutral_names: genome columns, of all settings.
     """
     reach = max(_reach(group) for group in groups)
     panels = sum(len(group.panels) for group in groups)
@@ -111,14 +112,13 @@ def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[st
         by_birth = len(groups) == 1 and groups[0].agents["world"].n_unique() == 1
         column = 0
         for group in groups:
-            neutral = _neutral(group, neutral_names)
             for panel in group.panels:
                 axes = figure.add_subplot(grid[1, column])
                 _scatter(figure, axes, group, panel, by_birth=by_birth)
                 _edge_marks(axes, group.agents, panel, reach)
                 _set_axes(axes, panel, reach, first=column == 0)
                 top = figure.add_subplot(grid[0, column], sharex=axes)
-                _marginal(top, group.agents[panel[0]].to_numpy(), neutral, reach)
+                _marginal(top, group, panel[0], reach)
                 column += 1
                 if panel == group.panels[0]:
                     head(top, group.title, group.remark)
@@ -126,9 +126,9 @@ def draw_weight_groups(groups: Sequence[WeightGroup], neutral_names: Sequence[st
                         say_empty(axes, "no agents recorded")
                 if panel == group.panels[-1]:
                     side = figure.add_subplot(grid[1, column], sharey=axes)
-                    _marginal(side, group.agents[panel[1]].to_numpy(), neutral, reach, upright=True)
+                    _marginal(side, group, panel[1], reach, upright=True)
                     column += 1
-        _legend(figure, groups, neutral_names, reach)
+        _legend(figure, groups, reach)
     return figure
 
 
@@ -141,11 +141,6 @@ def _set_axes(axes: Axes, panel: tuple[str, str], reach: float, *, first: bool) 
         axes.set_ylabel(y)
     else:
         axes.tick_params(labelleft=False)
-
-
-def _neutral(group: WeightGroup, neutral_names: Sequence[str]) -> np.ndarray:
-    """The first neutral marker of a setting's agents; empty where there is none."""
-    return group.agents[neutral_names[0]].to_numpy() if neutral_names else np.array([])
 
 
 def _scatter(figure: Figure, axes: Axes, group: WeightGroup, panel: tuple[str, str], *, by_birth: bool) -> None:
@@ -178,36 +173,27 @@ def _edge_marks(axes: Axes, rows: pl.DataFrame, panel: tuple[str, str], reach: f
     axes.scatter(x, y, marker="x", s=9, linewidths=0.7, color=MUTED, alpha=0.7, clip_on=False, zorder=3)
 
 
-def _marginal(axes: Axes, values: np.ndarray, neutral: np.ndarray, reach: float, *, upright: bool = False) -> None:
+def _marginal(axes: Axes, group: WeightGroup, name: str, reach: float, *, upright: bool = False) -> None:
     edges = np.linspace(-reach, reach, _BINS + 1)
-    orientation = "horizontal" if upright else "vertical"
-    look = {"bins": edges, "orientation": orientation, "histtype": "stepfilled"}
+    bins = {"bins": edges, "orientation": "horizontal" if upright else "vertical"}
+    values, drifted = group.agents[name].to_numpy(), group.drift.get(name)
     if len(values):
-        axes.hist(values, weights=np.full(len(values), 1 / len(values)), color=_DENSITY_COLOR, linewidth=0, **look)
-    if len(neutral):
-        axes.hist(
-            neutral,
-            weights=np.full(len(neutral), 1 / len(neutral)),
-            **{**look, "histtype": "step"},
-            color=NEUTRAL_COLOR,
-            linewidth=1.2,
-            label="neutral marker",
-        )
+        filled = {"histtype": "stepfilled", "color": _DENSITY_COLOR, "linewidth": 0}
+        axes.hist(values, weights=np.full(len(values), 1 / len(values)), **filled, **bins)
+    if drifted is not None:
+        outlined = {"histtype": "step", "color": NEUTRAL_COLOR, "linewidth": 1.2}
+        axes.hist(drifted, weights=np.full(len(drifted), 1 / len(drifted)), **outlined, **bins)
     axes.axis("off")
 
 
-def _legend(figure: Figure, groups: Sequence[WeightGroup], neutral_names: Sequence[str], reach: float) -> None:
+def _legend(figure: Figure, groups: Sequence[WeightGroup], reach: float) -> None:
     handles: list[Artist] = []
     worlds = sorted({world for group in groups for world in group.agents.select("world", "seed").unique().rows()})
     if 1 < len(worlds) <= _LEGEND_SEEDS:
         dot = {"marker": "o", "linestyle": "", "markersize": 4.5}
         handles += [Line2D([], [], color=seed_color(w), label=f"seed {seed}", **dot) for w, seed in worlds]
     handles.append(Patch(color=_DENSITY_COLOR, label="all agents"))
-    neutral = np.concatenate([_neutral(group, neutral_names) for group in groups])
-    if len(neutral):
-        outside = float((np.abs(neutral) > reach).mean())
-        label = "neutral marker" if outside < 0.01 else f"neutral marker ({100 * outside:.0f} % beyond)"
-        handles.append(Patch(facecolor="none", edgecolor=NEUTRAL_COLOR, linewidth=1.2, label=label))
+    handles.append(_drift_handle(groups, reach))
     beyond = sum(group.agents.filter(_is_beyond(group.weights, reach)).height for group in groups)
     if beyond:
         cross = {"marker": "x", "linestyle": "", "markersize": 3.5, "color": MUTED}
@@ -215,6 +201,17 @@ def _legend(figure: Figure, groups: Sequence[WeightGroup], neutral_names: Sequen
     narrow = 3 if 4 < len(handles) <= 6 else 4
     columns = narrow if len(figure.axes) < 5 else len(handles)
     figure.legend(handles=handles, loc="outside lower left", ncols=columns, columnspacing=1.0, handletextpad=0.3)
+
+
+def _drift_handle(groups: Sequence[WeightGroup], reach: float) -> Artist:
+    """Names the outline of drift, with how much of it the axes cut off, and the weights that have none."""
+    drifted = [group.drift[name] for group in groups for name in group.weights if name in group.drift]
+    absent = list(dict.fromkeys(name for group in groups for name in group.weights if name not in group.drift))
+    outside = float((np.abs(np.concatenate(drifted)) > reach).mean()) if drifted else 0.0
+    label = "drift alone" if outside < 0.01 else f"drift alone ({100 * outside:.0f} % beyond)"
+    if absent:
+        label = f"drift alone: not known of {', '.join(absent)}" if drifted else "drift alone: not known"
+    return Patch(facecolor="none", edgecolor=NEUTRAL_COLOR, linewidth=1.2, label=label)
 
 
 def _is_beyond(names: Sequence[str], reach: float) -> pl.Expr:

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import polars as pl
 
+from hedon.analysis.gene.band import drift_bands, drift_genes
+from hedon.analysis.gene.weight import last_living
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord
 from hedon.config.color import meal_colors, weight_colors
@@ -32,16 +34,17 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
     colors = meal_colors(first.config, first.prey)
     titles = weight_titles(first.reward_names, first.neutral_names)
     tints = weight_colors(titles, colors)
-    agents = pl.concat([world.agents.with_columns(world=_index(i)) for i, world in enumerate(worlds)])
+    living = [last_living(world.agents, world.population) for world in worlds]
+    agents = pl.concat([rows.with_columns(world=_index(i)) for i, rows in enumerate(living)])
     population = pl.concat([world.population.with_columns(world=_index(i)) for i, world in enumerate(worlds)])
 
     def rows(name: str) -> pl.DataFrame:
         return mine.get(name, pl.DataFrame())
 
     meals, neutral = (*first.food_kinds, *first.prey), first.neutral_names
-    courses = draw_histories([HistoryRow(population)], first.reward_names, neutral, colors)
-    yield figure.HISTORY.drawn(courses)
-    yield figure.WEIGHTS.drawn(draw_weights(agents, first.reward_names, neutral))
+    courses = HistoryRow(population, drift=drift_bands(worlds))
+    yield figure.HISTORY.drawn(draw_histories([courses], first.reward_names, neutral, colors))
+    yield figure.WEIGHTS.drawn(draw_weights(agents, first.reward_names, drift_genes(worlds, living)))
     yield figure.POPULATION.drawn(draw_population(population, meals, colors))
     yield figure.REGIME.drawn(draw_regimes(rows("regime_time")))
     yield figure.SURVIVAL.drawn(draw_survival(rows("survival"), rows("lifetime_world")))

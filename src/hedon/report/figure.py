@@ -7,17 +7,19 @@ HISTORY = FigureKind(
     "When did they evolve, and how much of it is drift?",
     "Mean weight of the living over time, and that of each neutral gene, which nothing depends on. Thin lines are "
     "worlds, the thick line is their mean, and the band around it its 95 % interval, from three worlds on. Shaded in "
-    "gray is where 95 % of the neutral genes of all worlds are at that time. A cross marks where a world died out. A "
-    "weight that stays within the gray may have drifted.",
+    "gray is where drift alone would have this weight in 95 % of worlds: neutral genes with its own founders and "
+    "mutations, walked down the pedigrees of these worlds. A cross marks where a world died out. A weight that stays "
+    "within the gray may have drifted.",
 )
 WEIGHTS = FigureKind(
     "weights",
     "Which rewards evolved?",
-    "A dot is one of the 5000 agents born last in each world, dead or alive: its weight of food against its weight of "
-    "action, a panel per kind of food. Colors tell seeds apart, or the time of birth where there is one world. The "
-    "axes reach as far as nearly all agents; crosses at the edge stand for the few beyond. Above and beside the axes: "
-    "how the weight is distributed over all agents, filled, and how the first neutral marker is, outlined. A weight "
-    "that is spread no further than the marker gives no evidence of selection.",
+    "A dot is an agent alive at the end, or when anybody last was in a world that died out: its weight of food against "
+    "its weight of action, a panel per kind of food. Colors tell seeds apart, or the time of birth where there is one "
+    "world. The axes reach as far as nearly all agents; crosses at the edge stand for the few beyond. Above and beside "
+    "the axes: how the weight is distributed over all agents, filled, and how it would be by drift alone, outlined: "
+    "neutral genes with its own founders and mutations, walked down the same pedigrees. Agents of one world are "
+    "relatives, so only the mean tells selection from drift, in the figure before.",
 )
 POPULATION = FigureKind(
     "population",

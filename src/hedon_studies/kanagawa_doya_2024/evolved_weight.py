@@ -3,14 +3,14 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from hedon.analysis import LAST_AGENTS, last_agents
+from hedon.analysis import LAST_AGENTS, drift_genes, last_agents
 from hedon.figure import NamedFigure, WeightGroup, against_action, draw_message, draw_weight_groups
 from hedon.study import Condition, Item, ItemInputs, describe, missing, present, sentences, stack, world_indices
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, PLACES, POISON, POOR, SIZES
 
 _READ = (
-    f"A point is one of the {LAST_AGENTS} agents of a world that were born last; the neutral marker, which enters no "
-    "reward, tells what drift alone does. Worlds that died out are shown; the paper replaced them."
+    f"A point is one of the {LAST_AGENTS} agents of a world that were born last; outlined, how their weights would be "
+    "distributed by drift alone. Worlds that died out are shown; the paper replaced them."
 )
 
 _AGAINST_ACTION = tuple(against_action(("w_normal",)))
@@ -35,11 +35,16 @@ def draw_last(
         return
     indices = world_indices(worlds.values())
     groups = [
-        WeightGroup(last_agents(stack(group, "agents", indices)), panels, label, "\n".join(describe(group)))
+        WeightGroup(
+            last_agents(stack(group, "agents", indices)),
+            panels,
+            label,
+            "\n".join(describe(group)),
+            drift_genes(group, [last_agents(world.agents) for world in group]),
+        )
         for label, group in worlds.items()
     ]
-    neutral = next(iter(worlds.values()))[0].neutral_names
-    yield NamedFigure(name, question, draw_weight_groups(groups, neutral), caption)
+    yield NamedFigure(name, question, draw_weight_groups(groups), caption)
 
 
 def _item(

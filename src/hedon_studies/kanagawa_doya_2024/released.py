@@ -5,7 +5,7 @@ from typing import Any
 
 import polars as pl
 
-from hedon.analysis import RESPONSES, ResultTable, WorldRecord, make_table
+from hedon.analysis import RESPONSES, ResultTable, WorldRecord, drift_genes, last_agents, make_table
 from hedon.figure import NamedFigure, draw_weights
 from hedon.statistic import share_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, shown_interval, world_rows
@@ -27,7 +27,7 @@ _DRAWN = "A line per world; a cross ends that of a world whose record ends befor
 _WEIGHTS = (
     "A point is one of the 5000 agents of a world that were born last: its weight of food against its weight of "
     "action; a color is a seed, the same in both figures. Above and beside the axes, the distributions over all "
-    "agents, and that of the first neutral marker, outlined."
+    "agents, and outlined, those that drift alone would give."
 )
 _FATE = (
     "A world heads for extinction if it died out or has fewer than half as many agents in its last tenth as in its "
@@ -64,15 +64,18 @@ def make_released(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
 
 def _weight_figures(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Iterator[NamedFigure]:
     """The paper's figure of weights, of all worlds and of those that last; seeds keep their colors."""
-    agents = [world.agents.with_columns(world=pl.lit(i, pl.Int32)) for i, world in enumerate(worlds)]
-    standing = [rows for rows, found in zip(agents, fates, strict=True) if not found.is_lost]
-    first = worlds[0]
-    look = (first.reward_names, first.neutral_names)
-    drawn = draw_weights(pl.concat(agents), *look)
-    yield NamedFigure("released_weights", "Which rewards evolved, in all worlds?", drawn, _WEIGHTS)
-    if standing and len(standing) < len(agents):
-        question, drawn = "And in those that do not head for extinction?", draw_weights(pl.concat(standing), *look)
-        yield NamedFigure("released_weights_standing", question, drawn, _WEIGHTS)
+    questions = {"released_weights": "Which rewards evolved, in all worlds?"}
+    standing = [i for i, found in enumerate(fates) if not found.is_lost]
+    shown = {"released_weights": list(range(len(worlds)))}
+    if 0 < len(standing) < len(worlds):
+        questions["released_weights_standing"] = "And in those that do not head for extinction?"
+        shown["released_weights_standing"] = standing
+    for name, question in questions.items():
+        last = {i: last_agents(worlds[i].agents).with_columns(world=pl.lit(i, pl.Int32)) for i in shown[name]}
+        drift = drift_genes([worlds[i] for i in last], list(last.values()))
+        yield NamedFigure(
+            name, question, draw_weights(pl.concat(last.values()), worlds[0].reward_names, drift), _WEIGHTS
+        )
 
 
 def _fate_rows(fates: Sequence[Fate]) -> Iterator[dict[str, Any]]:

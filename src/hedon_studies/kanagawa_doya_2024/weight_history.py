@@ -3,13 +3,15 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
+from hedon.analysis import drift_bands
 from hedon.figure import HistoryRow, NamedFigure, draw_histories, draw_message, meal_colors
 from hedon.study import Condition, Item, ItemInputs, describe, missing, present, sentences, stack, world_indices
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, POISON, POOR, SIZES
 
 _READ = (
     "Thin: one world; thick: the mean over the worlds that live, with its 95 % interval from three worlds on; a cross "
-    "ends the line of a world that died out. The neutral marker enters no reward: its course is drift."
+    "ends the line of a world that died out. Gray: where drift alone would have the weight in 95 % of worlds: neutral "
+    "genes with its own founders and mutations, walked down the same pedigrees."
 )
 
 
@@ -36,6 +38,7 @@ def draw_courses(
             label,
             ", ".join(describe(group)),
             {indices[world.seed] for world in group if world.extinct_step is not None},
+            drift_bands(group),
         )
         for label, group in worlds.items()
     ]

@@ -9,6 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from synthetic_run import synthetic_snapshot, write_run
 
+from hedon.analysis.gene.band import DriftBand
+from hedon.analysis.gene.weight import last_agents
 from hedon.analysis.world.population import history
 from hedon.config.color import food_colors
 from hedon.config.title import weight_title
@@ -32,12 +34,12 @@ def test_style_leaves_the_callers_settings_alone(tmp_path: Path) -> None:
 
 def test_weights_have_a_panel_per_kind_and_its_points(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=10, worlds=2, food_kinds=("normal", "poison")))
-    figure = draw_weights(run.agents(), run.reward_names, run.neutral_names, count=30)
+    last = last_agents(run.agents(), 30)
+    figure = draw_weights(last, run.reward_names, {})
     labels = [axes.get_xlabel() for axes in figure.axes]
     assert [label for label in labels if label] == ["weight of normal food", "weight of poison"]
     points = np.asarray(figure.axes[0].collections[0].get_offsets())
     assert len(points) == 60
-    last = run.agents().sort("world", "birth_step", "agent_id").group_by("world").tail(30)
     assert sorted(points[:, 0]) == pytest.approx(sorted(last["w_normal"]))
 
 
@@ -48,12 +50,35 @@ def test_weights_of_a_few_agents_do_not_squeeze_the_others(tmp_path: Path) -> No
         w_normal=pl.when(far).then(9.5).otherwise(pl.col("w_normal").clip(-0.5, 0.5)).cast(pl.Float32),
         w_action=pl.col("w_action").clip(-0.5, 0.5),
     )
-    figure = draw_weights(agents, run.reward_names, run.neutral_names)
+    figure = draw_weights(agents, run.reward_names, {"w_normal": np.linspace(-2.0, 2.0, 101)})
     axes = figure.axes[0]
     assert axes.get_xlim() == axes.get_ylim() == (-1, 1)
     marks = np.asarray(axes.collections[-1].get_offsets())
     assert marks[:, 0].tolist() == [1, 1, 1]
-    assert "3 agents beyond" in [text.get_text() for text in figure.legends[0].get_texts()]
+    told = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert told[2:] == ["all agents", "drift alone: not known of w_action", "3 agents beyond"]
+
+
+def test_a_weight_stands_before_its_own_drift(tmp_path: Path) -> None:
+    run = open_run(write_run(tmp_path / "run", intervals=10, worlds=1))
+    times, half = np.array([0.0, 10_240.0]), np.array([0.01, 0.2])
+    drift = {"w_normal": DriftBand(times, 1.0 - half, 1.0 + half), "neutral_1": DriftBand(times, -half, half)}
+    row = HistoryRow(run.population(), drift=drift)
+    figure = draw_histories([row], run.reward_names, run.neutral_names, food_colors(run.food_kinds))
+    food, action, neutral = figure.axes
+    for axes, middle in ((food, 1.0), (neutral, 0.0)):
+        points = axes.collections[0].get_paths()[0].vertices
+        assert (points[:, 1].min(), points[:, 1].max()) == pytest.approx((middle - 0.2, middle + 0.2))
+    assert not action.collections
+    assert [text.get_text() for axes in figure.axes for text in axes.texts] == ["no band of drift"]
+    assert food.get_ylim()[1] > 1.2
+    values = {"w_normal": np.full(10, 1.0), "w_action": np.full(10, -1.0)}
+    figure = draw_weights(run.agents(), run.reward_names, values)
+    top, side = (axes for axes in figure.axes if not axes.axison)
+    for axes, along, at in ((top, 0, 1.0), (side, 1, -1.0)):
+        (outline,) = (patch for patch in axes.patches if not patch.get_fill())
+        points = outline.get_path().vertices
+        assert points[points[:, 1 - along] > 0.5, along].mean() == pytest.approx(at, abs=0.05)
 
 
 def test_history_draws_the_mean_over_worlds(tmp_path: Path) -> None:

@@ -114,6 +114,26 @@ def neutral_means(
     return np.concatenate([gene[place].mean(axis=0, dtype=np.float64) for gene in genes])
 
 
+def neutral_genes(
+    tree: Genealogy, sample: NDArray[np.int64], law: MutationLaw, rng: np.random.Generator, walks: int
+) -> NDArray[np.float32]:
+    """Neutral genes of a sample of agents that walked down the pedigree.
+
+    Args:
+        tree: the pedigree, without gaps.
+        sample: positions of agents, (n,).
+        law: of founding and mutation.
+        rng: source of chance.
+        walks: how many genes, each independent of the others.
+
+    Returns:
+        Shape (n, walks).
+    """
+    nodes = np.flatnonzero(ancestry(tree, sample))
+    place = _places(tree, nodes)[sample]
+    return np.concatenate([gene[place] for gene in _walked(tree, nodes, law, rng, walks)], axis=1)
+
+
 def neutral_courses(
     tree: Genealogy, living: Sequence[NDArray[np.int64]], law: MutationLaw, rng: np.random.Generator, walks: int
 ) -> NDArray[np.float64]:

@@ -1,0 +1,130 @@
+"""Where drift alone would have each gene: what pictures draw behind it, in gray.
+
+Each gene has a control of its own: neutral genes with its founders and its mutations, walked down the pedigrees of the
+same worlds. The recorded neutral genes are no control for a gene of other founders or mutations: they begin elsewhere,
+or stray further or less far. Where no gene can walk down a pedigree (`walked_pedigree`), they are used for the genes
+whose law is their own, if there are enough of them; other genes have no control there.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from hedon.analysis.descent.walk import MutationLaw, mutation_law, neutral_genes
+from hedon.analysis.gene.course import standard_courses, standard_interval
+from hedon.analysis.gene.pedigree import walked_pedigree
+from hedon.analysis.world.population import history
+from hedon.analysis.world.record import WorldRecord, generator
+
+ENOUGH_GENES = 8
+"""Recorded neutral genes, over all worlds, from which on they are a control."""
+_RANGE = (0.025, 0.975)
+_WALKS = 100  # neutral genes per world for distributions over agents
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class DriftBand:
+    """Where 95 % of neutral genes of one law are, as means over the living of a world.
+
+    Attributes:
+        step: Times from the first on, (times,) [step].
+        low, high: Bounds at these times, (times,).
+    """
+
+    step: Floats
+    low: Floats
+    high: Floats
+
+
+def drift_bands(worlds: Sequence[WorldRecord]) -> dict[str, DriftBand]:
+    """The band of each gene of the worlds of one condition, all worlds together.
+
+    Args:
+        worlds: At least one.
+
+    Returns:
+        By genome column; genes that have no control are missing.
+    """
+    if any(walked_pedigree(world) is None for world in worlds):
+        return _recorded_bands(worlds)
+    courses = [course for course in standard_courses(worlds) if course is not None]
+    if not courses:
+        return {}
+    step = standard_interval(worlds) * np.arange(1 + max(course.intervals for course in courses))
+    laws, bands = _laws(worlds[0]), {}
+    for name, law in laws.items():
+        if law not in bands:
+            walks = [course.neutral[name] for course in courses]
+            at = (np.concatenate([walk[:, i] for walk in walks if walk.shape[1] > i]) for i in range(len(step)))
+            low, high = np.array([np.quantile(values, _RANGE) for values in at], np.float64).T
+            bands[law] = DriftBand(step.astype(np.float64), low, high)
+    return {name: bands[law] for name, law in laws.items()}
+
+
+def drift_genes(worlds: Sequence[WorldRecord], agents: Sequence[pl.DataFrame]) -> dict[str, Floats]:
+    """What some agents would have of each gene if it had drifted: many draws for each of them.
+
+    Args:
+        worlds: Of one condition.
+        agents: For each of them, rows of its own table `agents`.
+
+    Returns:
+        By genome column, values of all these agents together, (draws,), agents with equal weight; genes that have no
+        control are missing.
+    """
+    trees = [walked_pedigree(world) for world in worlds]
+    drawn: dict[MutationLaw, list[Floats]] = {}
+    for world, tree, rows in zip(worlds, trees, agents, strict=True):
+        if tree is None:
+            return _recorded_genes(worlds, agents)
+        sample = np.flatnonzero(world.agents["agent_id"].is_in(rows["agent_id"].implode()).to_numpy())
+        rng = generator(world)
+        for law in dict.fromkeys(_laws(world).values()):
+            values = neutral_genes(tree, sample, law, rng, _WALKS) if len(sample) else np.empty((0, 0))
+            drawn.setdefault(law, []).append(values.ravel().astype(np.float64))
+    pooled = {law: np.concatenate(values) for law, values in drawn.items()}
+    return {name: pooled[law] for name, law in _laws(worlds[0]).items() if len(pooled[law])}
+
+
+def _laws(world: WorldRecord) -> dict[str, MutationLaw]:
+    return {name: mutation_law(world.config, world.gene(name)) for name in world.weight_names}
+
+
+def _like_neutral(world: WorldRecord) -> Mapping[str, list[str]]:
+    """For each gene the recorded neutral genes that begin and mutate like it; none if a table gives the founders."""
+    if world.config.world.founders:
+        return {name: [] for name in world.weight_names}
+    genes = {name: world.gene(name) for name in world.weight_names}
+    return {
+        name: [each for each in world.neutral_names if (genes[each].law, genes[each].mutation) == (g.law, g.mutation)]
+        for name, g in genes.items()
+    }
+
+
+def _recorded_bands(worlds: Sequence[WorldRecord]) -> dict[str, DriftBand]:
+    stacked = pl.concat([world.population.with_columns(world=pl.lit(i, pl.Int32)) for i, world in enumerate(worlds)])
+    rows = history(stacked, (), worlds[0].neutral_names)
+    bands = {}
+    for name, alike in _like_neutral(worlds[0]).items():
+        courses = rows.unpivot([f"{each}_mean" for each in alike], index=["bin", "step"]).drop_nulls("value")
+        low, high = (pl.col("value").quantile(bound, "linear") for bound in _RANGE)
+        found = courses.group_by("bin").agg(pl.col("step").max(), pl.len(), low=low, high=high).sort("step")
+        found = found.filter(pl.col("len") >= ENOUGH_GENES)
+        if found.height:
+            bounds = (found[column].cast(pl.Float64).to_numpy() for column in ("step", "low", "high"))
+            bands[name] = DriftBand(*bounds)
+    return bands
+
+
+def _recorded_genes(worlds: Sequence[WorldRecord], agents: Sequence[pl.DataFrame]) -> dict[str, Floats]:
+    pooled = {}
+    for name, alike in _like_neutral(worlds[0]).items():
+        if len(alike) * len(worlds) >= ENOUGH_GENES:
+            values = [rows.select(alike).to_numpy().ravel().astype(np.float64) for rows in agents]
+            pooled[name] = np.concatenate(values)
+    return {name: values for name, values in pooled.items() if len(values)}
