@@ -1,15 +1,22 @@
 """The plots of the page tell species apart, in a replay as in a live world."""
 
-import math
 import re
 import shutil
+from pathlib import Path
 
+import numpy as np
 import polars as pl
 import pytest
 from split_run import record_species
 from view_page import live_server, run_live, run_server, serving
 
 from hedon import load_config
+from hedon.analysis.descent.genealogy import living_at
+from hedon.analysis.descent.walk import mutation_law, neutral_courses
+from hedon.analysis.gene.pedigree import walked_pedigree
+from hedon.analysis.world.record import read_worlds
+from hedon.experiment.plan import RunPlan
+from hedon.experiment.run import run
 from hedon.record.reader import open_run
 from hedon.view.live import live_world
 from hedon.view.server import Server
@@ -19,9 +26,9 @@ TITLES = "[...document.querySelectorAll('.plot-title')].map((each) => each.inner
 
 
 def test_a_replay_plots_the_numbers_of_each_species(tmp_path, watch):
-    run = open_run(record_species(tmp_path / "run", steps=640, seeds=(1,)))
-    rows = run.population()
-    with serving(run_server(run.path)) as server:
+    recorded = open_run(record_species(tmp_path / "run", steps=640, seeds=(1,)))
+    rows = recorded.population()
+    with serving(run_server(recorded.path)) as server:
         watched = watch(server.link)
         watched.until(f"hedon.source.series.step.length === {rows['step'].n_unique()}")
         for species in ("prey", "predator"):
@@ -60,31 +67,92 @@ def test_a_live_world_plots_the_numbers_of_each_species(watch):
 
 VERDICTS = """Object.fromEntries([...document.querySelectorAll('.verdict')]
   .map((each) => [each.previousElementSibling.innerText.split(' [')[0], each.innerText]))"""
+PLOTS = "hedon.plots.plots.filter((each) => each.judge).map((each) => each.chart.data.map((column) => [...column]))"
+"""Of each weight what is drawn: steps, means, and the limits of the band."""
+LAWS = {
+    "weight of normal food": {},
+    "weight of poison": {"food.poison.gene.initial_mean": 1.0, "food.poison.gene.initial_sd": 0.02},
+    "weight of action": {"genome.mutation.w_action": {"law": "student_t", "df": 3.0, "scale": 0.2, "limit": 0.3}},
+}
+"""Settings that make the gene of each weight begin or mutate unlike the neutral genes."""
 
 
-def test_each_weight_is_judged_against_the_band_of_drift(run_folder, tmp_path, watch):
-    """The words follow from the records: 1.96 times the root mean square of the neutral genes' means."""
+@pytest.fixture(scope="module")
+def unlike(tmp_path_factory) -> Path:
+    """A run whose genes have founders and mutations of their own."""
+    config = load_config("poison").with_("learning.policy", "random").with_("world.rollout_steps", 256)
+    for changes in LAWS.values():
+        for path, value in changes.items():
+            config = config.with_(path, value)
+    folder = tmp_path_factory.mktemp("unlike") / "run"
+    run(RunPlan(config, (1,), 4096, folder, 1, 1024))
+    return folder
+
+
+def test_each_weight_has_the_band_of_its_own_founders_and_mutations(unlike, watch):
+    """Of 4000 neutral genes that the analysis walks, 5 % are beyond the limits that the page has of 400."""
+    (world,) = read_worlds([open_run(unlike)])
+    tree = walked_pedigree(world)
+    steps = world.population["step"].to_list()
+    living = [living_at(tree, step) for step in steps]
+    names = dict(zip(LAWS, world.reward_names, strict=True))
+    with serving(run_server(unlike)) as server:
+        watched = watch(server.link)
+        watched.until(f"hedon.source.series.step.length === {len(steps)}")
+        watched.get("hedon.tab('plots')")
+        watched.until("hedon.source.loaded && hedon.plots.known === hedon.source.lives.size")
+        watched.rest_at(4096)
+        watched.until("!/^$|yet/.test(document.querySelector('.verdict').innerText)")
+        said = watched.get(VERDICTS)
+        assert list(said) == list(names)
+        for (title, name), (step, mean, high, low) in zip(names.items(), watched.get(PLOTS), strict=True):
+            assert step == steps
+            walked = neutral_courses(
+                tree, living, mutation_law(world.config, world.gene(name)), np.random.default_rng(1), 4000
+            )
+            share = ((walked < np.array(low)) | (walked > np.array(high))).mean(axis=0)
+            assert (share > 0.015).all(), title  # the error of a share of 400 is 1.1 %
+            assert (share < 0.09).all(), title
+            numbers = [float(each) for each in re.findall(r"-?[\d.]+", said[title].replace("\N{MINUS SIGN}", "-"))]
+            assert numbers == pytest.approx([mean[-1], low[-1], high[-1]], abs=2e-3)
+            where = "within" if low[-1] <= mean[-1] <= high[-1] else "outside"
+            assert f"{where} drift" in said[title]
+
+
+def test_a_band_is_left_out_where_a_parent_is_missing(unlike, tmp_path, watch):
     folder = tmp_path / "run"
-    shutil.copytree(run_folder, folder)
-    part = next((folder / "population").glob("*.parquet"))
-    rows = pl.read_parquet(part)
-    strayed = rows.with_columns(w_normal_mean=pl.col("w_normal_mean") + 5.0)  # as if it had been selected
-    strayed.select(rows.columns).cast(rows.schema).write_parquet(part, compression="zstd")
-    neutral = rows.select(pl.col("^neutral_\\d+_mean$")).row(-1)
-    limit = 1.96 * math.sqrt(sum(value * value for value in neutral) / len(neutral))
+    shutil.copytree(unlike, folder)
+    for part in [*(folder / "agents").glob("*.parquet"), *folder.glob("living*.parquet")]:
+        rows = pl.read_parquet(part)
+        rows.filter(pl.col("parent_id").is_not_null()).write_parquet(part, compression="zstd")
     with serving(run_server(folder)) as server:
         watched = watch(server.link)
-        watched.until("hedon.source.series.step.length > 1")
+        watched.until("hedon.source.series.step.length > 1 && hedon.source.loaded")
         watched.get("hedon.tab('plots')")
-        watched.rest_at(2048)
-        watched.until("document.querySelector('.verdict').innerText !== ''")
+        watched.rest_at(4096)
+        watched.until("!/^$|yet/.test(document.querySelectorAll('.verdict')[1].innerText)")
         said = watched.get(VERDICTS)
-        assert set(said) == {"weight of normal food", "weight of poison", "weight of action"}
-        numbers = [float(each) for each in re.findall(r"-?[\d.]+", said["weight of normal food"])]
-        assert numbers == pytest.approx([strayed["w_normal_mean"][-1], -limit, limit], abs=2e-3)
-        assert "outside drift" in said["weight of normal food"]
-        action = rows["w_action_mean"][-1]
-        assert ("within" if abs(action) < limit else "outside") in said["weight of action"]
+    assert "drift (" in said["weight of normal food"]  # by 16 recorded neutral genes of its own law
+    assert said["weight of poison"] == "No band: the parents of some agents are not known."
+
+
+def test_a_live_world_takes_the_laws_of_changed_settings(watch):
+    changes = {"food.normal.gene.initial_mean": "1.5", "learning.policy": "random", "birth.mating": "none"}
+    told = "".join(f"&set={path}%3D{value}" for path, value in changes.items())
+    with serving(live_server("small")) as server:
+        watched = watch(f"{server.link}#live=small{told}")
+        watched.get("hedon.tab('plots')")
+        for step in (256, 512):
+            run_live(watched, step)
+        watched.until("hedon.plots.points === 2")
+        (step, mean, high, low), *_ = watched.get(PLOTS)
+        assert step[-1] == 512
+        assert low[-1] < 1.5 < high[-1] < low[-1] + 0.3
+        assert low[-1] - 0.1 < mean[-1] < high[-1] + 0.1
+        watched.get("hedon.source.acts.push({ step: 0, path: 'genome.mutation_scale', value: '1' })")
+        run_live(watched, 768)
+        watched.until("hedon.plots.points === 3")
+        assert watched.get(PLOTS)[0][3][-1] is None
 
 
 def test_an_empty_plot_says_when_it_fills(watch):
@@ -98,9 +166,10 @@ def test_an_empty_plot_says_when_it_fills(watch):
         watched.until("[...document.querySelectorAll('.empty')].every((each) => each.hidden)")
 
 
-def test_without_neutral_genes_there_is_no_band_and_the_page_says_so(watch):
-    page = {"run": False, "worlds": [live_world(load_config("small", overrides=["genome.neutral_count=1"]), "small")]}
+def test_two_parents_and_too_few_neutral_genes_leave_no_band_and_the_page_says_so(watch):
+    overrides = ["genome.neutral_count=1", 'birth.mating="pairs"']
+    page = {"run": False, "worlds": [live_world(load_config("small", overrides=overrides), "small")]}
     with serving(Server({"page": lambda: page}, dict)) as server:
         watched = watch(server.link)
         watched.get("hedon.tab('plots')")
-        watched.until("document.querySelector('.verdict').innerText.startsWith('No band')")
+        watched.until("document.querySelector('.verdict').innerText.startsWith('No band: children have two parents')")

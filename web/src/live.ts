@@ -4,7 +4,7 @@ import { Lives } from "./lives";
 import type { Actions, Edit, Moment, Order, Report } from "./live.worker";
 import { columnOf, Series } from "./series";
 import type { Source } from "./source";
-import type { Frame, Life, LiveWorld, AgentProbe, Place } from "./types";
+import type { Frame, GeneLaw, Layout, Life, LiveWorld, AgentProbe, Place } from "./types";
 import { type Earned, Windows } from "./windows";
 
 export const SAMPLE_STEPS = 256; // between two points of the plots
@@ -22,6 +22,19 @@ export function textOf(world: LiveWorld, changes: Map<string, string>, seed: num
   return world.text.trimEnd().split("\n").map(line).join("\n") + "\n";
 }
 
+/** The layout, with what decides drift as the engine's text has it: settings may have been changed. */
+function lawful(layout: Layout, text: string): Layout {
+  const values = new Map(text.split("\n").map((line) => [line.slice(0, line.indexOf("=")), line.slice(line.indexOf("=") + 1)]));
+  const law = (s: number, i: number): GeneLaw => {
+    const of = (name: string) => values.get(`layout[${s}].genes[${i}].${name}`)!;
+    const [mean, sd] = ["law.initial_mean", "law.initial_sd"].map((name) => Number(of(name))) as [number, number];
+    const [scale, df, probability, limit] = ["scale", "df", "probability", "limit"].map((name) => Number(of(`mutation.${name}`))) as [number, number, number, number];
+    return { mean, sd, law: of("mutation.law"), scale, df, probability, limit };
+  };
+  const species = layout.species.map((each, s) => ({ ...each, laws: each.genes.map((_, i) => law(s, i)), mating: values.get(`species[${s}].birth.mating`)! }));
+  return { ...layout, species, mutation_noise: values.get("world.mutation_noise")! };
+}
+
 export class Live implements Source {
   readonly live = true;
   readonly lives = new Lives();
@@ -30,6 +43,8 @@ export class Live implements Source {
   readonly acts: { step: number; path: string; value: string }[] = []; // settings that were changed on the way
   readonly first = 0;
   readonly spacing = 1;
+  readonly loaded = true;
+  readonly layout: Layout;
   last = 0;
   chosen = -1;
   fused = false;
@@ -62,15 +77,16 @@ export class Live implements Source {
   ) {
     this.worker.onmessage = ({ data }: MessageEvent<Report>) => this.take(data);
     const text = textOf(world, changes, seed);
+    this.layout = lawful(world.layout, text);
     this.send({ type: "make", text, layout: world.layout, threads: wanted });
-  }
-
-  get layout() {
-    return this.world.layout;
   }
 
   close(): void {
     this.worker.terminate();
+  }
+
+  get relawed(): number {
+    return this.acts.find(({ path }) => path.includes("genome."))?.step ?? Infinity;
   }
 
   get ended(): boolean {

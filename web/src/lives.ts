@@ -2,6 +2,7 @@
 import type { Life } from "./types";
 
 export class Lives {
+  rewinds = 0; // how often something was forgotten
   private readonly known = new Map<number, Life>();
   private readonly family = new Map<number, number[]>();
   private readonly roots = new Map<number, number>();
@@ -29,6 +30,7 @@ export class Lives {
 
   /** Forgets what happened after a step. */
   rewind(step: number): void {
+    this.rewinds++;
     const before = [...this.known.values()].filter((life) => life.birth <= step);
     for (const each of [this.known, this.family, this.roots]) each.clear();
     for (const life of before) this.put(life.death > step ? { ...life, death: -1 } : life);

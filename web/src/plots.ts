@@ -29,6 +29,7 @@ interface Plot {
 export class Plots {
   private plots: Plot[] = [];
   private points = -1;
+  private known = 0; // lives of a replay that the bands are of
   private theme = "";
   private now = 0;
   private readonly living: LivingPlots;
@@ -57,8 +58,10 @@ export class Plots {
     if (this.host.hidden) return;
     const { step } = this.source.series;
     const theme = styleColor("--quiet");
-    const grown = step.length !== this.points || theme !== this.theme;
-    [this.points, this.theme] = [step.length, theme];
+    const { lives, live, loaded } = this.source;
+    const known = live || !loaded ? 0 : lives.size; // a replay reads lives after the series, and its bands need them
+    const grown = step.length !== this.points || known !== this.known || theme !== this.theme;
+    [this.points, this.known, this.theme] = [step.length, known, theme];
     const width = Math.max(this.host.clientWidth - 28, 100);
     const at = step.findLastIndex((each) => each <= now);
     for (const { chart, height, data, empty, judge } of this.plots) {
@@ -94,11 +97,13 @@ export class Plots {
 
   private add(title: string, unit: string, lines: Line[], band?: () => Band | string, verdict?: HTMLElement): Plot {
     const { series } = this.source;
-    const banded = band !== undefined && typeof band() !== "string";
+    const banded = band !== undefined;
     const data = () => {
       const columns = lines.map(({ name }) => fitted(series.get(name), series.step.length));
-      const limits = banded ? (band() as Band) : undefined;
-      return [series.step, ...columns, ...(limits ? [limits.high, limits.low] : [])] as uPlot.AlignedData;
+      const limits = band?.();
+      const nothing = series.step.map(() => null);
+      const { high, low } = typeof limits === "object" ? limits : { high: nothing, low: nothing };
+      return [series.step, ...columns, ...(banded ? [high, low] : [])] as uPlot.AlignedData;
     };
     const drawn: uPlot.Series[] = lines.map(({ label, color }) => ({ label, stroke: color, width: 2, points: { show: false } }));
     if (banded) for (const label of ["drift, high", "drift, low"]) drawn.push({ label, stroke: "#8889", dash: [4, 4], points: { show: false } });

@@ -36,6 +36,8 @@ function apart(rows: Map<string, Row>): Row {
 
 export class Replay implements Source {
   readonly live = false;
+  readonly relawed = Infinity;
+  loaded = false;
   readonly lives = new Lives();
   readonly series = new Series();
   readonly layout: Layout;
@@ -142,6 +144,7 @@ export class Replay implements Source {
         else this.addLives(columns);
       }
     }
+    this.loaded = true;
   }
 
   private addPopulation(columns: Columns): void {

@@ -15,6 +15,8 @@ export interface Source {
   readonly ended: boolean; // whether no moment comes after the last one
   readonly lives: Lives;
   readonly series: Series;
+  readonly loaded: boolean; // whether all lives that are recorded so far are known
+  readonly relawed: number; // the step from which on genes mutate by another law than the layout says; Infinity if they never do
   /** The moments at or before `step` and after it, where they are known; requests the others. */
   around(step: number): { before?: Frame; after?: Frame };
   agentProbe(): AgentProbe | undefined;

@@ -9,6 +9,17 @@ export interface Gene {
   color: string;
 }
 
+/** How a gene begins, by a normal law, and what a birth adds to it: with `probability` noise of a law and a scale. */
+export interface GeneLaw {
+  mean: number;
+  sd: number;
+  law: string;
+  scale: number;
+  df: number;
+  probability: number;
+  limit: number;
+}
+
 export interface Species {
   name: string;
   color: string;
@@ -22,8 +33,8 @@ export interface Species {
   smells: number[]; // types, by channel
   sets: { place: string; gene: number; low: number; high: number }[]; // numbers that genes of the layout multiply
   genes: number[]; // of the layout's genes, in the order of the genome
-  starts: number[]; // of each of them, the mean of the founders
-  drifts: boolean[]; // whether the neutral markers mutate like it, so that they show its drift
+  laws: GeneLaw[]; // of each of them
+  mating: string; // "pairs" where children have two parents
   stores: { name: string; capacity: number }[]; // energy first
   observed: { name: string; unit: string; scale: number; meaning: string }[]; // beside rays and touch
   reward: { meals: { meal: number; gene: number; coef: number }[]; rest: string[] }; // what meals tell of it, and the rest
@@ -40,6 +51,8 @@ export interface Layout {
   arena: { width: number; height: number; walls: [number, number, number, number][] };
   window: number;
   energy_capacity: number;
+  mutation_noise: string; // "tabulated" where births share it
+  founders: boolean; // whether they come from a table
 }
 
 export type Place = [number, number];

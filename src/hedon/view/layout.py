@@ -25,9 +25,10 @@ def describe(config: Config) -> dict[str, Any]:
         `types`, by channel), noses (count, degrees between the heading and each of two, decay [1/u] of smell with
         distance), smells (indices into `types`, by channel), sets (numbers that genes multiply by 10^gene: place, the
         path of the setting; gene, an index into `genes`; low and high, its limits), genes (indices into `genes`, in
-        genome order), starts (mean of the founders, by gene), drifts (whether its neutral markers mutate like the gene,
-        so that they show its drift), reward (see `_reward`), stores (name and capacity of each, energy first) and
-        observed (name, unit, scale and meaning of what it observes beside rays and touch);
+        genome order), laws (by gene, mean and sd of the founders; law, scale, df and probability of the noise that a
+        birth adds; and the limit), mating (how many parents a child has), reward (see `_reward`), stores (name and
+        capacity of each, energy first) and observed (name, unit, scale and meaning of what it observes beside rays and
+        touch);
         `types`: names that senses tell apart: the species, the foods, walls, and obstacles where there are any;
         `foods`: name, radius [u], energy and color of each;
         `genes`: of all species, each once: name, role (as `Gene.role`), input (what it rewards, "" for none), title in
@@ -35,7 +36,8 @@ def describe(config: Config) -> dict[str, Any]:
         `meals`: what an agent may eat, in the order in which the engine counts it;
         `obstacle_corners`: of each obstacle, 0 where there are none; `obstacle_color`;
         `arena`: width, height [u] and walls (ax, ay, bx, by) [u]; `window`: steps between two times of learning;
-        `energy_capacity`: most energy of an agent.
+        `energy_capacity`: most energy of an agent; `mutation_noise`, as the setting; `founders`: whether they come from
+        a table.
     """
     made = layouts(config)
     colors = meal_colors(config)
@@ -64,12 +66,13 @@ def describe(config: Config) -> dict[str, Any]:
         },
         "window": config.world.rollout_steps,
         "energy_capacity": max(each.energy.capacity for each in config.species.values()),
+        "mutation_noise": config.world.mutation_noise,
+        "founders": bool(config.world.founders),
     }
 
 
 def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
     every, columns = types(config), gene_columns(config)
-    neutral = next((gene.mutation for gene in layout.genes if gene.role == "neutral"), None)
     return {
         "name": name,
         "color": species_color(list(config.species).index(name)),
@@ -94,14 +97,27 @@ def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesL
             for path, (low, high) in ((path, limits_of(kind_of(path))) for path in species.genome.set)
         ],
         "genes": [columns.index(gene) for gene in layout.gene_names],
-        "starts": [gene.law.initial_mean for gene in layout.genes],
-        "drifts": [gene.mutation == neutral for gene in layout.genes],
+        "laws": [_law(gene) for gene in layout.genes],
+        "mating": species.birth.mating,
         "reward": _reward(species, layout, columns),
         "stores": [{"name": name, "capacity": store.capacity} for name, store in species.stores.items()],
         "observed": [
             {"name": each.name, "unit": each.unit, "scale": each.scale, "meaning": each.meaning}
             for each in layout.observed
         ],
+    }
+
+
+def _law(gene: Gene) -> dict[str, Any]:
+    mutation = gene.mutation
+    return {
+        "mean": gene.law.initial_mean,
+        "sd": gene.law.initial_sd,
+        "law": mutation.law,
+        "scale": mutation.scale,
+        "df": mutation.df,
+        "probability": mutation.probability,
+        "limit": mutation.limit,
     }
 
 
