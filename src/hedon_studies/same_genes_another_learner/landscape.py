@@ -83,6 +83,9 @@ def direction_change(before: pl.DataFrame, after: pl.DataFrame, outcome: str = "
         before: Founders of the first arm.
         after: Founders of the second arm.
         outcome: As for `slopes`.
+
+    Returns:
+        One value per pair, by seed [share of mean fitness per unit of weight], shape (pairs,).
     """
     pairs = slopes(before, outcome).join(slopes(after, outcome), on="seed", suffix="_after").drop_nulls().sort("seed")
     sight, food = (pairs[f"{gene}_after"] - pairs[gene] for gene in (SIGHT, FOOD))
