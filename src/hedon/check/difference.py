@@ -9,8 +9,6 @@ import polars as pl
 
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config.dump import diff
-from hedon.config.load import load_config
-from hedon.record.folder import CONFIG
 from hedon.record.manifest import Manifest
 from hedon.record.reader import open_run
 
@@ -78,9 +76,9 @@ def compare_runs(a: Path, b: Path) -> Difference:
         RecordError: one is not a run, or cannot be read.
         ConfigError: the config of one cannot be read.
     """
-    runs = open_run(a), open_run(b)
+    runs = [open_run(path).load() for path in (a, b)]
     one, two = (run.manifest for run in runs)
-    settings = diff(*(load_config(run.path / CONFIG) for run in runs))
+    settings = diff(*(run.config for run in runs))
     made_by = [(name, getattr(one, name), getattr(two, name)) for name in MADE_BY]
     first, second = (_by_seed(read_worlds([run])) for run in runs)
     partings = [_parting(seed, first[seed], second[seed]) for seed in one.seeds if seed in first.keys() & second.keys()]

@@ -101,6 +101,19 @@ def _config_of(tables: Table, path: Path | None, fidelity: str | None = None, te
     return _from_layers([name, *below], [own, *changes], f"{origin}, with changes" if changes else origin)
 
 
+def load_config_text(text: str, path: Path) -> Config:
+    """As `load_config` of a file whose text has been read.
+
+    Args:
+        text: TOML.
+        path: Of the file.
+
+    Raises:
+        ConfigError: Something in it is wrong; the error lists all problems.
+    """
+    return _config_of(parse_toml(text, str(path)), path)
+
+
 def parse_config(text: str, origin: str) -> Config:
     """The config of a complete TOML text, as `dump_toml` writes it.
 

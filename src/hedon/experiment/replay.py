@@ -7,7 +7,6 @@ from pathlib import Path
 import polars as pl
 
 from hedon.check.finding import Finding
-from hedon.config.load import parse_config
 from hedon.error import HedonError
 from hedon.experiment.branch import plan_branch, start_branch
 from hedon.experiment.plan import Display
@@ -35,7 +34,7 @@ def replay_run(folder: Path | str, threads: int = 0, display: Display | None = N
         return (), f"not computed again: the run's status is {run.manifest.status}, so there is no end to compare with"
     if not kept or kept[0] >= steps:
         return (), "not computed again: there is no checkpoint before the end"
-    config = parse_config(run.config_text, str(run.path))
+    config = run.config
     if config.driven:
         return (), "not computed again: another program told its agents what to do"
     start = kept[0]
@@ -54,7 +53,7 @@ def _compare(run: Run, again: Run, manifest: Manifest, start: int) -> Iterator[F
         if old != new:
             yield Finding("manifest.json", f"world {world}: computed again, its digest is {new}, not {old}")
     # A world that died out in the checkpoint's window, before it, has its row of that window in both.
-    window = start - start % parse_config(run.config_text, str(run.path)).world.rollout_steps
+    window = start - start % run.config.world.rollout_steps
     later = pl.col("death_step").is_null() | (pl.col("death_step") > start)
     tables = {
         "agents": (run.agents().filter(later), again.agents(), ["world", "agent_id"]),

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from hedon.analysis.world.record import WorldRecord, read_worlds
-from hedon.config import Config, ConfigError, load_config
+from hedon.config import Config, ConfigError
 from hedon.config.load import changed_settings
 from hedon.config.problem import format_value
 from hedon.record.error import RecordError
-from hedon.record.folder import CONFIG, MANIFEST
+from hedon.record.folder import MANIFEST
 from hedon.record.founder import Founders
 from hedon.record.manifest import RuleSource
 from hedon.record.reader import Run, open_run
@@ -84,13 +84,13 @@ def find_runs(folder: Path, wanted: Iterable[RunRequirement]) -> tuple[list[Run]
     runs, faults = [], []
     for path in sorted(folder.glob(f"*/{MANIFEST}")):
         try:
-            run = open_run(path.parent)
+            run = open_run(path.parent).load()
             manifest = run.manifest
             mine = seeds.get(manifest.config_digest or "", ())
             is_needed = manifest.parent is None and any(seed in mine for seed in manifest.seeds)
             # A config that this version cannot read, as one that lacks a setting, might be one that is needed.
             if is_needed or (manifest.preset, manifest.fidelity) in presets:
-                load_config(run.path / CONFIG)
+                _ = run.config
             if is_needed:
                 runs.append(run)
         except (RecordError, ConfigError) as error:

@@ -1,4 +1,5 @@
 from .founder import make_founders as make_founders
+from .reader import LoadedRun as LoadedRun
 from .reader import Run as Run
 from .reader import open_run as open_run
 from .snapshot import Snapshot as Snapshot

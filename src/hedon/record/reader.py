@@ -1,13 +1,16 @@
 """Reads a run's folder, also while the run is still running."""
 
 import difflib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, overload
 
 import polars as pl
 
+from hedon.config import Config
+from hedon.config.load import load_config_text
 from hedon.record.column import Table
 from hedon.record.error import RecordError
 from hedon.record.folder import (
@@ -44,6 +47,23 @@ class Run:
     path: Path
     manifest: Manifest
     config_text: str
+
+    def load(self) -> "LoadedRun":
+        """The run as its files are now, each of which is read once.
+
+        Raises:
+            RecordError: A file of its folder cannot be listed.
+        """
+        return LoadedRun(self.path, self.manifest, self.config_text)
+
+    @property
+    def config(self) -> Config:
+        """The resolved settings.
+
+        Raises:
+            ConfigError: The config does not fit this version of hedon.
+        """
+        return load_config_text(self.config_text, self.path / CONFIG)
 
     @property
     def columns(self) -> Columns:
@@ -96,9 +116,7 @@ class Run:
             ArgumentError: `frame` is none of these, or pandas is not installed.
         """
         require_frame(frame)
-        living, parts = self._living(skip_damaged)
-        dead = self._read("agents", part_paths(self.path, "agents")[:parts], skip_damaged)
-        rows = pl.concat([dead, living.join(dead, on=["world", "agent_id"], how="anti")])
+        rows = self._agents().sound(skip_damaged)
         return to_pandas(rows) if frame == "pandas" else rows
 
     @overload
@@ -117,8 +135,7 @@ class Run:
             ArgumentError: `frame` is none of these, or pandas is not installed.
         """
         require_frame(frame)
-        rows = self._read("population", part_paths(self.path, "population"), skip_damaged)
-        rows = rows.sort("world", "step", maintain_order=True)
+        rows = self._population().sound(skip_damaged)
         return to_pandas(rows) if frame == "pandas" else rows
 
     def frames(self) -> pl.LazyFrame:
@@ -147,44 +164,93 @@ class Run:
 
     def damaged_parts(self) -> list[Path]:
         """The files of the tables agents and population that cannot be used."""
-        living = [self.path / LIVING] if (self.path / LIVING).exists() else []
-        paths = {"agents": [*part_paths(self.path, "agents"), *living]}
-        paths["population"] = part_paths(self.path, "population")
-        return [path for name, each in paths.items() for path in each if self._fault(name, path) is not None]
+        return [*self._agents().faults, *self._population().faults]
 
-    def _living(self, skip_damaged: bool) -> tuple[pl.DataFrame, int | None]:
-        """The living, and how many parts hold the deaths before that moment; None for all existing parts."""
+    def _agents(self) -> "_Rows":
         table, path = self._tables["agents"], self.path / LIVING
+        living, parts = pl.DataFrame(schema=table.polars_schema), None
+        faults: dict[Path, RecordError] = {}
         if path.exists():
             try:
-                return read_living(path, table, self.manifest)
+                living, parts = read_living(path, table, self.manifest)
             except RecordError as error:
-                if not skip_damaged:
-                    raise _remedied([error]) from error
-        return pl.DataFrame(schema=table.polars_schema), None
+                faults[path] = error
+        dead = self._read("agents", part_paths(self.path, "agents"), parts)
+        rows = pl.concat([dead.rows, living.join(dead.rows, on=["world", "agent_id"], how="anti")])
+        return _Rows(rows, {**dead.faults, **faults})
 
-    def _read(self, name: str, paths: list[Path], skip_damaged: bool) -> pl.DataFrame:
+    def _population(self) -> "_Rows":
+        read = self._read("population", part_paths(self.path, "population"))
+        return replace(read, rows=read.rows.sort("world", "step", maintain_order=True))
+
+    def _read(self, name: str, paths: Sequence[Path], used: int | None = None) -> "_Rows":
+        """All sound rows of the first parts of a table, and what is wrong with the other files.
+
+        Args:
+            name: Of the table.
+            paths: Of all its parts.
+            used: How many of the parts count, since later ones have deaths after the living were written; None for all.
+        """
         table = self._tables[name]
-        frames, faults = [pl.DataFrame(schema=table.polars_schema)], []
-        for path in paths:
+        frames, faults = [pl.DataFrame(schema=table.polars_schema)], dict[Path, RecordError]()
+        for i, path in enumerate(paths):
             try:
-                frames.append(read_part(path, table, self.manifest))
+                rows = read_part(path, table, self.manifest)
             except RecordError as error:
-                faults.append(error)
-        if faults and not skip_damaged:
-            raise _remedied(faults) from faults[0]
-        return pl.concat(frames)
-
-    def _fault(self, name: str, path: Path) -> RecordError | None:
-        try:
-            read_part(path, self._tables[name], self.manifest)
-        except RecordError as error:
-            return error
-        return None
+                faults[path] = error
+            else:
+                frames += [rows] if used is None or i < used else []
+        return _Rows(pl.concat(frames), faults)
 
     @property
     def _tables(self) -> dict[str, Table]:
         return run_tables(self.columns)
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """What a table's files hold, and the faults of those that cannot be used."""
+
+    rows: pl.DataFrame
+    faults: Mapping[Path, RecordError]
+
+    def sound(self, skip_damaged: bool) -> pl.DataFrame:
+        """The rows; an error for all faults unless they are skipped."""
+        if self.faults and not skip_damaged:
+            listed = "; ".join(map(str, self.faults.values()))
+            raise RecordError(f"{listed}: read the others with skip_damaged=True, or remove the file")
+        return self.rows
+
+
+class LoadedRun(Run):
+    """A run whose files are read once, on first use, so that all numbers come from the same rows."""
+
+    def load(self) -> "LoadedRun":
+        """Itself."""
+        return self
+
+    @property
+    def config(self) -> Config:
+        """As `Run.config`."""
+        return self._loaded_config
+
+    def _agents(self) -> _Rows:
+        return self._loaded_agents
+
+    def _population(self) -> _Rows:
+        return self._loaded_population
+
+    @cached_property
+    def _loaded_config(self) -> Config:
+        return super().config
+
+    @cached_property
+    def _loaded_agents(self) -> _Rows:
+        return super()._agents()
+
+    @cached_property
+    def _loaded_population(self) -> _Rows:
+        return super()._population()
 
 
 def open_run(path: Path | str) -> Run:
@@ -203,11 +269,6 @@ def open_run(path: Path | str) -> Run:
     except (OSError, UnicodeDecodeError) as error:
         raise RecordError(f"cannot read {folder / CONFIG}: {error}") from error
     return Run(folder, load_manifest(folder), config_text)
-
-
-def _remedied(faults: Sequence[RecordError]) -> RecordError:
-    listed = "; ".join(map(str, faults))
-    return RecordError(f"{listed}: read the others with skip_damaged=True, or remove the file")
 
 
 def _nearest(folder: Path) -> str:

@@ -61,6 +61,7 @@ def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Te
     if not isinstance(runs, Iterable) or not all(isinstance(run, Run) for run in runs):
         raise ArgumentError(f"runs: must be a list of runs, as open_run gives them, not {brief(repr(runs))}")
     tell(0, len(topics), "reading the records")
+    runs = [run.load() for run in runs]
     conditions = by_condition(read_worlds(runs))
     several = len(conditions) > 1
     tables = {table.name: replace(table, several=several) for table in run_topics(conditions, topics, tell)}

@@ -55,7 +55,7 @@ def write_report(*runs: Run, folder: Path | str | None = None, tell: Tell = tell
         # All figures together count as many steps as the topics.
         analysis = analyze(runs, tell=lambda done, of, step: tell(done, 2 * of, step))
         tell(len(TOPICS), 2 * len(TOPICS), "figures")
-        summaries = [_write_summary(run) for run in runs]
+        summaries = [_write_summary(run) for run in analysis.runs]
         (folder / FIGURES).mkdir(exist_ok=True)
         figures: list[FigureFile] = []
         for group, named in _figures(analysis, faults):

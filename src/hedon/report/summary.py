@@ -19,7 +19,6 @@ from hedon.analysis.world.ledger import world_ledger
 from hedon.analysis.world.population import last_generation, mean_alive, mean_energy, run_tail
 from hedon.analysis.world.record import born_since, gone_step
 from hedon.analysis.world.species import Kind, by_species, kinds
-from hedon.config.load import parse_config
 from hedon.record.reader import Run
 from hedon.statistic.interval import mean_interval
 from hedon.study.catalogue import reported_figures
@@ -62,6 +61,7 @@ def summarize(run: Run) -> dict[str, Any]:
     Raises:
         ConfigError: the run has several species, and its config cannot be read.
     """
+    run = run.load()
     agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
     parts = _by_species(run, agents, population)
     fares = {name: _fares(run, part) for name, part in parts.items()}
@@ -103,7 +103,7 @@ def plain(value: Any) -> Any:
 
 
 def _by_species(run: Run, agents: pl.DataFrame, population: pl.DataFrame) -> dict[str, _Species]:
-    config = parse_config(run.config_text, str(run.path)) if run.columns.several else None
+    config = run.config if run.columns.several else None
     lives, rows = by_species(agents, run.columns), by_species(population, run.columns)
     return {name: _Species(kind, lives[name], rows[name]) for name, kind in kinds(run.columns, config).items()}
 

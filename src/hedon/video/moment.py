@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.expression import gene_column
-from hedon.config.load import parse_config
 from hedon.config.schema.arena import walls
 from hedon.record.reader import Run, open_run
 from hedon.record.snapshot import Snapshot, own_bodies
@@ -154,7 +153,7 @@ def open_footage(folder: Path, seed: int | None = None) -> Footage:
     found = _steps(run, pl.col("world") == world)
     if found is None:
         raise VideoError(f"{run.path} has no frames of this world: record them with `hedon run --frames 64`")
-    return Footage(run, parse_config(run.config_text, str(folder)), world, *found)
+    return Footage(run, run.config, world, *found)
 
 
 def _steps(run: Run, wanted: pl.Expr) -> tuple[int, int] | None:

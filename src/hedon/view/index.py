@@ -5,7 +5,6 @@ from typing import Any
 
 import polars as pl
 
-from hedon.config.load import parse_config
 from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, TABLE_FOLDERS, part_paths
 from hedon.record.part import read_part
@@ -39,7 +38,7 @@ class RunIndex:
         """
         run = open_run(self.folder)
         manifest = run.manifest
-        config = parse_config(run.config_text, str(self.folder))
+        config = run.config
         return {
             "name": manifest.name or self.folder.name,
             "folder": self.folder.resolve().name,

@@ -1,4 +1,7 @@
+import io
+from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -50,3 +53,21 @@ def test_a_report_that_cannot_be_written_says_so(tmp_path: Path) -> None:
     (folder / "figures").touch()
     with pytest.raises(RecordError, match="cannot write the report"):
         write_report(open_run(folder))
+
+
+def test_a_report_reads_each_file_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = write_run(tmp_path / "run", intervals=2, worlds=3)
+    read: Counter[str] = Counter()
+    original = io.open
+
+    def count(file: Any, *options: Any, **named: Any) -> Any:
+        if not isinstance(file, int) and Path(file).is_relative_to(folder):
+            read[Path(file).relative_to(folder).as_posix()] += 1
+        return original(file, *options, **named)
+
+    monkeypatch.setattr("io.open", count)
+    monkeypatch.setattr("builtins.open", count)
+    write_report(open_run(folder))
+    records = {name: times for name, times in read.items() if name.endswith((".parquet", ".toml"))}
+    parts = {f"{table}/part-000000.parquet": 1 for table in ("agents", "population")}
+    assert records == {**parts, "agents/living.parquet": 1, "config.toml": 1}

@@ -9,12 +9,11 @@ import polars as pl
 
 from hedon.analysis.world.population import extinct_step
 from hedon.analysis.world.species import Kind, by_species, kinds
-from hedon.config import Config, flatten, load_config
+from hedon.config import Config, flatten
 from hedon.config.gene import gene_of
 from hedon.config.layout import Gene
 from hedon.config.problem import format_value
 from hedon.config.schema.species import ONLY, SpeciesConfig
-from hedon.record.folder import CONFIG
 from hedon.record.reader import Run
 from hedon.text import brief
 
@@ -164,7 +163,7 @@ def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
         RecordError, ConfigError: a run cannot be read.
     """
     kept: dict[tuple[str, int], WorldRecord] = {}
-    runs = list(runs)
+    runs = [run.load() for run in runs]
     labels = _labels(runs)
     for run in runs:
         for world in _run_worlds(run, labels[_key(run)]):
@@ -202,7 +201,7 @@ def _by(end: int, step: int | None) -> int | None:
 
 
 def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
-    config = load_config(str(run.path / CONFIG))
+    config = run.config
     agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
     own = kinds(run.columns, config)
     if not run.columns.several:
@@ -300,7 +299,7 @@ def _key(run: Run) -> str:
 
 def _differences(runs: Sequence[Run]) -> list[str]:
     """What tells the settings of some runs apart, a phrase for each; empty where that is too much for a name."""
-    values = [flatten(load_config(str(run.path / CONFIG))) for run in runs]
+    values = [flatten(run.config) for run in runs]
     paths = dict.fromkeys(path for each in values for path in each)
     varied = [path for path in paths if any(each.get(path) != values[0].get(path) for each in values)]
     if len(varied) > MOST_DIFFERENCES:
