@@ -75,7 +75,7 @@ def draw_weights(agents: pl.DataFrame, reward_names: Sequence[str], drift: Mappi
     Args:
         agents: rows of the table `agents`: those that are shown.
         reward_names: genome columns that have an effect.
-        drift: by genome column, what such agents would have of it if it had drifted, each of shape (draws,); see `WeightGroup`.
+        drift: by genome column, what such agents would have of it if it had drifted, each (draws,); see `WeightGroup`.
     """
     panels = against_action(reward_names)
     if not panels:

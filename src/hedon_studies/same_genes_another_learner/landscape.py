@@ -1,7 +1,7 @@
 """Part A: the fitness of liking the sight of food, and food itself, for six learners with the same founders.
 
-`python -m hedon_studies.same_genes_another_learner.landscape FOLDER` prints the tests that expected.md names, for a
-folder with the founders' table of each arm: `FOLDER/baseline/founders-outcome.csv`, and so on.
+`python -m hedon_studies.same_genes_another_learner.landscape FOLDER` prints the tests that expected.md names. The
+folder holds `founders.parquet`, the genes that all arms share, and `outcomes.parquet`, what became of them in each arm.
 """
 
 import sys
@@ -30,8 +30,42 @@ REPEATS = (0.05, 0.16)
 """Where the mean of the primary test has to be, for the landscapes to repeat the pilots."""
 CHANGES = (("baseline", "short"), ("baseline", "long"), ("baseline", "normalized"), ("slow", "baseline"))
 HUMPS = ("baseline", "slow", "fast", "short", "long")
+FOUNDERS, OUTCOMES = "founders.parquet", "outcomes.parquet"
 
 Floats = NDArray[np.float64]
+
+
+def write_arms(arms: Mapping[str, pl.DataFrame], folder: Path) -> None:
+    """Writes the founders of all arms, their genes once.
+
+    Args:
+        arms: Tables `founders-outcome.csv` of `hedon assay landscape`, by arm.
+        folder: For the two files; must exist.
+
+    Raises:
+        ValueError: The founders of two arms differ.
+    """
+    first = next(iter(arms.values()))
+    genes = [name for name in first.columns if name.startswith(("w_", "neutral_"))]
+    shared = first.select(pl.col("seed", "agent_id").cast(pl.Int32), pl.col(genes).cast(pl.Float32))
+    outcomes = [name for name in first.columns if name not in shared.columns]
+    for name, arm in arms.items():
+        if not arm.select(genes).equals(first.select(genes)):
+            raise ValueError(f"{name}: its founders have other genes than those of {next(iter(arms))}")
+    became = [arm.select(pl.lit(name).alias("arm"), pl.col(outcomes).cast(pl.Float32)) for name, arm in arms.items()]
+    for file, table in ((FOUNDERS, shared), (OUTCOMES, pl.concat(became))):
+        table.write_parquet(folder / file, compression="zstd", compression_level=19)
+
+
+def read_arms(folder: Path) -> dict[str, pl.DataFrame]:
+    """The founders of each arm with their genes and outcomes.
+
+    Args:
+        folder: With the files of `write_arms`.
+    """
+    founders = pl.read_parquet(folder / FOUNDERS)
+    became = pl.read_parquet(folder / OUTCOMES).partition_by("arm", as_dict=True, include_key=False)
+    return {str(name): pl.concat([founders, rows], how="horizontal") for (name,), rows in became.items()}
 
 
 def slopes(founders: pl.DataFrame, outcome: str, genes: tuple[str, ...] = (SIGHT, FOOD, ACTION)) -> pl.DataFrame:
@@ -109,6 +143,26 @@ def named_tests(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
 
 
+def neutral_control(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
+    """How often a neutral gene, added to the regression, has a slope whose 95 % interval over worlds leaves out 0.
+
+    Args:
+        arms: Founders of each arm, by name.
+
+    Returns:
+        One row per arm: "arm", "genes", and "excluding_0", for how many genes the interval leaves out 0.
+    """
+    rows: list[dict[str, Any]] = []
+    for name, founders in arms.items():
+        neutral = [gene for gene in founders.columns if gene.startswith("neutral_")]
+        found = [slopes(founders, "food", (SIGHT, FOOD, ACTION, gene))[gene].drop_nulls() for gene in neutral]
+        tests = [_row(gene, values.to_numpy()) for gene, values in zip(neutral, found, strict=True)]
+        rows.append(
+            {"arm": name, "genes": len(neutral), "excluding_0": sum(t["low"] > 0 or t["high"] < 0 for t in tests)}
+        )
+    return pl.DataFrame(rows)
+
+
 def repeats_the_pilots(tests: pl.DataFrame) -> bool:
     """Whether the primary test meets the criterion that was fixed before the first world.
 
@@ -134,8 +188,8 @@ def _row(name: str, values: Floats) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1])
-    table = named_tests({name: pl.read_csv(folder / name / "founders-outcome.csv") for name in ARMS})
+    read = read_arms(Path(sys.argv[1]))
+    tests = named_tests(read)
     with pl.Config(tbl_rows=20, tbl_cols=10, fmt_str_lengths=40, tbl_width_chars=140):
-        print(table)
-    print("repeats the pilots:", repeats_the_pilots(table))
+        print(tests, neutral_control(read), sep="\n")
+    print("repeats the pilots:", repeats_the_pilots(tests))

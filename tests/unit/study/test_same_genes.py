@@ -1,5 +1,8 @@
 """Landscapes of six learners: the tests that were named before find what is in the founders, and nothing else."""
 
+import subprocess
+from pathlib import Path
+
 import numpy as np
 import polars as pl
 import pytest
@@ -11,9 +14,15 @@ from hedon_studies.same_genes_another_learner.landscape import (
     SIGHT,
     hump,
     named_tests,
+    neutral_control,
+    read_arms,
     repeats_the_pilots,
     slopes,
+    write_arms,
 )
+
+ROOT = Path(__file__).parents[3]
+RESULTS = ROOT / "docs" / "results"
 
 
 def founders(seed: int, sight: float, food: float, bend: float = 0.0, worlds: int = 30) -> pl.DataFrame:
@@ -60,3 +69,43 @@ def test_a_hump_is_found_in_its_arm():
     holm = {row["test"]: row["p_holm"] for row in named_tests(arms).iter_rows(named=True)}
     assert holm["hump, slow"] < 0.001
     assert hump(arms["slow"])["hump"].mean() < -0.5
+
+
+def test_founders_of_all_arms_are_kept_once(tmp_path):
+    arms = {name: founders(1, 0.1, 0.1, worlds=2) for name in ARMS}
+    arms["fast"] = arms["fast"].with_columns(food=pl.col("food") * 2)
+    arms = {name: arm.with_columns(agent_id=pl.int_range(pl.len())) for name, arm in arms.items()}
+    write_arms(arms, tmp_path)
+    again = read_arms(tmp_path)
+    assert list(again) == list(ARMS)
+    assert again["fast"]["food"].to_numpy() == pytest.approx(arms["fast"]["food"].to_numpy(), rel=1e-6)
+    assert again["slow"][SIGHT].to_numpy() == pytest.approx(arms["slow"][SIGHT].to_numpy(), rel=1e-6)
+    with pytest.raises(ValueError, match="fast: its founders have other genes"):
+        write_arms(arms | {"fast": founders(2, 0.1, 0.1, worlds=2)}, tmp_path)
+
+
+def test_the_page_has_the_numbers_of_the_committed_founders():
+    page = (RESULTS / "learner.md").read_text()
+    arms = read_arms(RESULTS / "learner")
+    tests = named_tests(arms)
+    assert repeats_the_pilots(tests)
+    for row in tests.iter_rows(named=True):
+        digits = 2 if row["test"].startswith("hump") else 3
+        effect, low, high = (f"{row[name]:.{digits}f}".replace("-", "\N{MINUS SIGN}") for name in ("effect", "low", "high"))
+        assert f"{effect} ({low} … {high})" in page
+    outside = neutral_control(arms)
+    assert f"excludes 0 in {outside['excluding_0'].sum()} of {outside['genes'].sum()} cases" in page
+    for arm in arms.values():
+        found = slopes(arm, "food")
+        assert f"| {found[SIGHT].mean():.3f} (" in page
+        assert f"| {found[FOOD].mean():.3f} (" in page
+
+
+def test_every_arm_started_after_its_expectation_was_committed():
+    for run in pl.read_csv(RESULTS / "learner" / "runs.csv").iter_rows(named=True):
+        assert run["expectation_committed"] < run["started"]
+        if (ROOT / ".git").exists():
+            shown = subprocess.run(
+                ["git", "show", "-s", "--format=%cI", run["expectation"]], cwd=ROOT, capture_output=True, text=True
+            )
+            assert shown.returncode or shown.stdout.strip() == run["expectation_committed"]
