@@ -14,8 +14,10 @@ from typer.testing import CliRunner
 from hedon.cli.main import app
 from hedon.jobs.store import Store
 from hedon.report.table import cells
-from hedon.statistic.power import t_test_power, worlds_needed
+from hedon.statistic.contrast import independent_contrast, paired_contrast
+from hedon.statistic.power import SIMULATED, contrast_power, worlds_needed
 from hedon.sweep.collect import collect
+from hedon.sweep.contrast import compare
 from hedon.sweep.error import SweepError
 from hedon.sweep.plan import load_plan
 from hedon.sweep.report import settings_table
@@ -91,15 +93,33 @@ def test_what_the_extinct_do_not_have_is_left_out_and_they_are_counted(tmp_path)
     assert "| agents alive" in (Path(place) / "contrast" / "contrast.md").read_text()
 
 
-@pytest.mark.long
-def test_without_an_effect_few_tests_find_one(tmp_path):
-    """Of 200 null sweeps about 5 % have p below 0.05, paired and not: the tests keep their level."""
-    from hedon.statistic.contrast import independent_contrast, paired_contrast
+def test_pairs_are_of_one_seed_and_one_setting_of_all_other_factors():
+    """A part of a sweep is done: settings differ by a hundred, costs by nothing."""
+    every = [(seed, cost, start) for seed in range(6) for cost in (0.001, 0.01) for start in (8.0, 9.0)]
+    done = [row for i, row in enumerate(every) if i % 3]
+    value = [100 * start + 10 * seed for seed, _, start in done]
+    table = pl.DataFrame(done, schema=["seed", "cost", "start"], orient="row").with_columns(y=pl.Series(value))
+    first, second = (table.filter(pl.col("cost") == cost) for cost in (0.001, 0.01))
+    (found,) = compare(first, second, {"y": "y"}, ["start"])
+    assert found.matched.paired
+    assert found.contrast.difference == 0
+    settings = [set(side.select("seed", "start").iter_rows()) for side in (first, second)]
+    assert found.matched.left_out == len(settings[0] ^ settings[1]) > 0
+    (apart,) = compare(first, second, {"y": "y"}, ["start"], paired=False)
+    assert abs(apart.contrast.difference) < 10, "what seeds differ by, not what settings do"
+    missing = table.with_columns(
+        y=pl.when((pl.col("cost") == 0.01) & (pl.col("start") == 9.0)).then(None).otherwise("y")
+    )
+    sides = (missing.filter(pl.col("cost") == cost) for cost in (0.001, 0.01))
+    assert compare(*sides, {"y": "y"}, ["start"])[0].contrast.difference == 0
 
-    rng = np.random.default_rng(3)
+
+def test_below_five_worlds_there_is_no_interval():
+    rng = np.random.default_rng(1)
     for test in (paired_contrast, independent_contrast):
-        p = [test(*rng.normal(size=(2, 8))).p for _ in range(200)]
-        assert 2 <= sum(each < 0.05 for each in p) <= 20  # 10 expected, sd 3.1
+        few, enough = (test(rng.normal(size=n), rng.normal(size=n)) for n in (4, 5))
+        assert math.isnan(few.low)
+        assert enough.low < enough.difference < enough.high
 
 
 def test_factors_that_are_not_crossed_are_told(tmp_path):
@@ -135,20 +155,29 @@ def test_what_cannot_be_compared_is_refused(tmp_path, words, message):
 @pytest.mark.parametrize(("effect", "needed"), [(0.02, 48), (0.015, 84), (0.01, 186)])
 def test_pairs_for_the_slope_of_fear(effect, needed):
     """The pilot's ten pairs have an sd of 0.0484."""
-    assert worlds_needed(effect / 0.0484, paired=True) == needed
+    assert worlds_needed(effect / 0.0484, "pairs") == needed
 
 
-@pytest.mark.parametrize("paired", [True, False])
-def test_as_many_worlds_as_needed_find_an_effect_as_often_as_asked(paired):
-    """By drawing worlds and testing them."""
-    worlds, rng, tries = worlds_needed(0.6, 0.8, paired=paired), np.random.default_rng(2), 4000
+@pytest.mark.parametrize("design", ["pairs", "independent"])
+@pytest.mark.parametrize("effect", [0.6, 2.5])
+def test_as_many_worlds_as_needed_find_an_effect_as_often_as_asked(design, effect):
+    """By drawing worlds and comparing them as `hedon contrast` does: with 4 or 5 pairs it finds nothing."""
+    worlds, rng = worlds_needed(effect, design), np.random.default_rng(2)
     assert worlds is not None
-    other = rng.normal(0.6, 1.0, (tries, worlds))
-    base = np.zeros((tries, worlds)) if paired else rng.normal(0.0, 1.0, (tries, worlds))
-    p = (stats.ttest_rel if paired else stats.ttest_ind)(other, base, axis=1)[1]
-    found = float((np.asarray(p, float) < 0.05).mean())
-    assert found == pytest.approx(t_test_power(0.6, worlds, paired=paired), abs=4 * math.sqrt(0.16 / tries))
-    assert t_test_power(0.6, worlds, paired=paired) >= 0.8 > t_test_power(0.6, worlds - 1, paired=paired)
+    assert design == "independent" or worlds >= 6
+    test = paired_contrast if design == "pairs" else independent_contrast
+    tries = 300
+    drawn = ((rng.normal(0.0, design != "pairs", worlds), rng.normal(effect, 1.0, worlds)) for _ in range(tries))
+    found = sum(test(base, other).p <= 0.05 for base, other in drawn) / tries
+    assert found == pytest.approx(contrast_power(effect, worlds, design), abs=4 * math.sqrt(0.16 / tries))
+    assert contrast_power(effect, worlds, design) >= 0.8 > contrast_power(effect, worlds - 1, design)
+
+
+@pytest.mark.parametrize("effect", [0.5, 0.9])
+def test_simulated_power_meets_that_of_the_t_test(effect):
+    for design in ("pairs", "independent"):
+        below, above = (contrast_power(effect, SIMULATED + i, design) for i in (0, 1))
+        assert 0 < above - below < 0.06
 
 
 def power_rows(folder: Path, *words: str) -> list[dict]:
@@ -165,21 +194,22 @@ def test_a_pilot_says_how_many_worlds_are_needed(tmp_path):
     table = pl.read_parquet(f"{place}/table.parquet")
     within = table.select(pl.col("alive_mean") - pl.col("alive_mean").mean().over("condition")).to_numpy()
     assert apart["sd"] == pytest.approx(math.sqrt(float((within**2).sum()) / (4 * (SEEDS - 1))))
-    assert apart["needed"] == worlds_needed(4 / apart["sd"], paired=False)
-    assert pairs["needed"] == worlds_needed(4 / pairs["sd"], paired=True)
+    assert apart["needed"] == worlds_needed(4 / apart["sd"], "independent")
+    assert pairs["needed"] == worlds_needed(4 / pairs["sd"], "pairs")
     assert pairs["low"] <= pairs["needed"] <= pairs["high"]
     # Worlds of one seed are alike here, so that four conditions know the spread no better than one.
     least, most = (apart["sd"] * math.sqrt((SEEDS - 1) / stats.chi2.ppf(q, SEEDS - 1)) for q in (0.975, 0.025))
-    assert [apart["low"], apart["high"]] == [worlds_needed(4 / sd, paired=False) for sd in (least, most)]
-    assert pairs["needed"] < 6 < 40 < apart["needed"], "worlds of one seed are alike"
-    table.with_columns(pl.col("energy.basic_cost").alias("cost")).vstack(
-        table.with_columns(pl.lit(0.5).alias("cost"))
-    ).select("seed", "cost", "alive_mean").write_csv(tmp_path / "three.csv")
+    assert [apart["low"], apart["high"]] == [worlds_needed(4 / sd, "independent") for sd in (least, most)]
+    assert pairs["needed"] < 8 < 40 < apart["needed"], "worlds of one seed are alike"
+    one = table.filter(pl.col("energy.initial") == 8.0).with_columns(cost=pl.col("energy.basic_cost"))
+    three = pl.concat([one, one.with_columns(cost=pl.lit(0.5)).filter(pl.col("energy.basic_cost") == 0.001)])
+    three.select("seed", "cost", "alive_mean").write_csv(tmp_path / "three.csv")
     chosen = ("--by", "cost", "--between", "0.001,0.01", "--only", "alive_mean", "--effect", "-4")
     three = {row["design"]: row for row in power_rows(tmp_path, str(tmp_path / "three.csv"), *chosen)}
-    assert three["pairs"]["sd"] == pytest.approx(pairs["sd"])
+    changes = [one.filter(pl.col("cost") == cost).sort("seed")["alive_mean"].to_numpy() for cost in (0.001, 0.01)]
+    assert three["pairs"]["sd"] == pytest.approx(float((changes[1] - changes[0]).std(ddof=1)))
     seen = power_rows(tmp_path, place, "--only", "alive_mean")
-    assert worlds_needed(seen[0]["with 20"] / seen[0]["sd"], paired=False) == 20
+    assert worlds_needed(seen[0]["with 20"] / seen[0]["sd"], "independent") == 20
 
 
 def test_worlds_of_a_table_and_of_two_assays_are_pilots(tmp_path):
@@ -210,11 +240,13 @@ def test_worlds_of_a_table_and_of_two_assays_are_pilots(tmp_path):
         (("a.csv", "--by", "seed", "--between", "1,4"), "--between 1,4: name two of the values of seed"),
         (("a.csv", "--between", "1,2"), "give it as --by COLUMN"),
         (("same.csv",), "worlds differ in no measure"),
+        (("twice.csv",), "2 worlds have seed 2: keep one row per seed and condition"),
     ],
 )
 def test_what_says_nothing_of_worlds_is_refused(tmp_path, monkeypatch, words, message):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.csv").write_text("seed,slope\n1,0.5\n2,0.7\n3,0.1\n")
+    (tmp_path / "twice.csv").write_text("seed,slope\n1,0.5\n2,0.5\n2,0.7\n")
     (tmp_path / "same.csv").write_text("seed,slope\n1,0.5\n2,0.5\n")
     done = CliRunner().invoke(app, ["power", *words])
     assert message in str(done.exception)

@@ -27,6 +27,7 @@ from .world.extinction import species_loss as species_loss
 from .world.extinction import world_extinction as world_extinction
 from .world.group import REACH as REACH
 from .world.group import company as company
+from .world.population import alive_after_extinction as alive_after_extinction
 from .world.population import death_rates as death_rates
 from .world.population import history as history
 from .world.population import last_generation as last_generation

@@ -10,7 +10,7 @@ import polars as pl
 from hedon.analysis.agent.food import food_per_agent_step, food_per_step
 from hedon.analysis.agent.lifetime import durations, mean_lifetime
 from hedon.analysis.gene.weight import last_mean
-from hedon.analysis.world.population import TAIL, last_generation, mean_alive, mean_energy, run_tail
+from hedon.analysis.world.population import alive_after_extinction, last_generation, mean_alive, mean_energy, run_tail
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.survival import SurvivalCurve, restricted_mean, survival_curve
 
@@ -107,9 +107,7 @@ def figures(world: WorldRecord, common: Common, responses: Sequence[Response]) -
 def _alive(world: WorldRecord, common: Common) -> float | None:
     if world.extinct_step is None:
         return mean_alive(run_tail(world.population))
-    begin = (1 - TAIL) * common.end
-    tail = world.population.filter(pl.col("step") > begin)
-    return int(tail["agent_steps"].sum()) / (common.end - begin)
+    return alive_after_extinction(world.population, common.end)
 
 
 def _energy(world: WorldRecord, _common: Common) -> float | None:

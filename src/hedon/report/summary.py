@@ -16,7 +16,7 @@ from hedon.analysis.agent.food import food_per_agent_step, food_per_step
 from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
 from hedon.analysis.gene.weight import LAST_AGENTS, last_living, weight_spreads
 from hedon.analysis.world.ledger import world_ledger
-from hedon.analysis.world.population import last_generation, mean_alive, mean_energy, run_tail
+from hedon.analysis.world.population import alive_after_extinction, last_generation, mean_alive, mean_energy, run_tail
 from hedon.analysis.world.record import born_since, gone_step
 from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.record.reader import Run
@@ -190,7 +190,7 @@ def _fare(run: Run, part: _Species, index: int) -> Fare:
     hunts = {"prey_per_step": food_per_step(agents, prey), "prey_per_agent_step": food_per_agent_step(population, prey)}
     return {
         "alive": alive,
-        "alive_mean": mean_alive(tail),
+        "alive_mean": mean_alive(tail) if extinct is None else alive_after_extinction(population, _end(run)),
         "extinct": extinct is not None,
         "extinct_step": extinct,
         **{name: population[name].sum() for name in (*_COUNTS, *_CAUSES) if name in population.columns},
@@ -201,11 +201,19 @@ def _fare(run: Run, part: _Species, index: int) -> Fare:
         "food_per_agent_step": food_per_agent_step(population, foods),
         **(hunts if run.columns.prey else {}),
         "eaten": {meal: population[f"eaten_{meal}"].sum() for meal in (*foods, *prey)},
-        "mean_energy": mean_energy(tail),
+        "mean_energy": mean_energy(tail) if extinct is None else None,
         "generation": last_generation(population),
         "weights": weight_spreads(last_living(agents, population), part.kind.genes),
         "ledger": world_ledger(population, agents),
     }
+
+
+def _end(run: Run) -> int:
+    """Up to which step all worlds of a run were to go, or have gone so far; at least 1."""
+    manifest = run.manifest
+    longest = max(manifest.steps_done, default=0)
+    recorded = run.population(skip_damaged=True)["step"].to_numpy().max(initial=0)
+    return max(manifest.steps_asked if manifest.status == "finished" else max(longest, int(recorded)), 1)
 
 
 def _sum(values: Iterable[float | None]) -> float | None:

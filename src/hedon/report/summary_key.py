@@ -71,7 +71,7 @@ _WORLD: dict[str, str] = {
 
 FARE_KEYS: dict[str, str] = {
     "alive": "agents alive at the end",
-    "alive_mean": "agents alive, mean over the last tenth of the steps made",
+    "alive_mean": "agents alive, mean over the last tenth of the steps; after its last agent, a world counts as empty",
     "extinct": "true if nobody is left",
     "extinct_step": "step at which nobody was left, or null",
     "births": "children born",
@@ -84,7 +84,7 @@ FARE_KEYS: dict[str, str] = {
     "food_per_step": "mean over the dead of foods eaten / lifetime [1/step]; null for who eats no food",
     "food_per_agent_step": "foods eaten by all / steps lived by all [1/step]; likewise",
     "eaten": "by food kind: foods eaten; and by species: agents eaten",
-    "mean_energy": "energy of the living, mean over the last tenth of the steps made",
+    "mean_energy": "energy of the living, mean over the last tenth of the steps; none in a world that died out",
     "generation": "mean generation of the living at the end, or when somebody lived last",
     "weights": "by genome column: mean and sd over the living at the end, or when somebody lived last",
     "ledger": "sums of energy: initial, eaten, forgiven, basic, action, capped, lost, shared, final; and "

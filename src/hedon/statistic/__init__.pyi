@@ -15,7 +15,7 @@ from .interval import mean_interval as mean_interval
 from .interval import share_interval as share_interval
 from .interval import spread_interval as spread_interval
 from .mode import modes as modes
+from .power import contrast_power as contrast_power
 from .power import effect_seen as effect_seen
-from .power import t_test_power as t_test_power
 from .power import worlds_needed as worlds_needed
 from .survival import survival_curve as survival_curve

@@ -12,10 +12,12 @@ from hedon.analysis.result import ResultTable, make_table
 from hedon.config.problem import format_value, nearest
 from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, styled
 from hedon.report.answer import Answer
-from hedon.statistic.contrast import Contrast, Floats, independent_contrast, paired_contrast
+from hedon.statistic.contrast import Contrast, independent_contrast, paired_contrast
 from hedon.statistic.correction import holm
+from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.sweep.collect import table_value
 from hedon.sweep.error import SweepError
+from hedon.sweep.match import Matched, match
 from hedon.sweep.plan import SweepPlan
 from hedon.sweep.response import responses
 
@@ -29,16 +31,12 @@ class Compared:
 
     Attributes:
         title: what the measure is called.
-        values: of the first condition, by seed, (worlds,).
-        others: of the second, (worlds,); in pairs, of the same seeds.
-        paired: whether they are compared in pairs.
+        matched: the values that are compared.
         contrast: how they differ.
     """
 
     title: str
-    values: Floats
-    others: Floats
-    paired: bool
+    matched: Matched
     contrast: Contrast
 
 
@@ -113,7 +111,12 @@ def comparable(
 
 
 def compare(
-    first: pl.DataFrame, second: pl.DataFrame, shown: Mapping[str, str], *, paired: bool = True
+    first: pl.DataFrame,
+    second: pl.DataFrame,
+    shown: Mapping[str, str],
+    factors: Sequence[str] = (),
+    *,
+    paired: bool = True,
 ) -> list[Compared]:
     """Compares two groups of worlds. Worlds of one seed count once, by their mean.
 
@@ -121,30 +124,15 @@ def compare(
         first: of the first condition, a row per world.
         second: of the second.
         shown: columns, and what they are called.
+        factors: columns of the other factors, in whose settings worlds are matched.
         paired: whether to compare in pairs where both have worlds of the same seeds.
     """
     found = []
     for name, title in shown.items():
-        one, other = (by_seed(table, name) for table in (first, second))
-        seeds = sorted(one.keys() & other.keys())
-        pairs = paired and len(seeds) == min(len(one), len(other)) > 0
-        values, others = (
-            np.array([each[seed] for seed in (seeds if pairs else sorted(each))], np.float64) for each in (one, other)
-        )
-        contrast = (paired_contrast if pairs else independent_contrast)(values, others)
-        found.append(Compared(title, values, others, pairs, contrast))
+        matched = match(first, second, name, factors, paired=paired)
+        test = paired_contrast if matched.paired else independent_contrast
+        found.append(Compared(title, matched, test(matched.values, matched.others)))
     return found
-
-
-def by_seed(table: pl.DataFrame, name: str) -> dict[int, float]:
-    """The mean of a column over the worlds of each seed that have a value.
-
-    Args:
-        table: a row per world.
-        name: of the column.
-    """
-    known = table.select("seed", pl.col(name).cast(pl.Float64)).fill_nan(None).drop_nulls()
-    return dict(known.group_by("seed").agg(pl.col(name).mean()).iter_rows())
 
 
 def contrast_answer(
@@ -177,7 +165,8 @@ def contrast_answer(
     for worlds, name in ((first, names[0]), (second, names[1])):
         if worlds.is_empty():
             raise SweepError(f"no world with {by} = {name} is done yet: there is nothing to compare")
-    found = compare(first, second, responses(table, only, plan.factors), paired=paired)
+    held = [name for name in plan.factors if name not in (by, *others)]
+    found = compare(first, second, responses(table, only, plan.factors), held, paired=paired)
     tables = [_contrasts(found, names, by, others), _extinct(first, second, names, by)]
     content = {"sweep": plan.name, "by": by, "between": list(levels), "steps": plan.steps, "also_differs": others}
     intro = f"{by} = {names[1]} against {names[0]}, worlds of {plan.steps:,} steps."
@@ -188,7 +177,7 @@ def contrast_answer(
 def _contrasts(found: Sequence[Compared], names: Sequence[str], by: str, others: Sequence[str]) -> ResultTable:
     rows = []
     for each, corrected in zip(found, holm([each.contrast.p for each in found]), strict=True):
-        contrast = each.contrast
+        contrast, values, second = each.contrast, each.matched.values, each.matched.others
         rows.append(
             {
                 "measure": each.title,
@@ -196,18 +185,21 @@ def _contrasts(found: Sequence[Compared], names: Sequence[str], by: str, others:
                 "low": contrast.low,
                 "high": contrast.high,
                 "effect size": contrast.effect,
-                names[0]: float(each.values.mean()) if len(each.values) else None,
-                names[1]: float(each.others.mean()) if len(each.others) else None,
-                "worlds": len(each.values) if each.paired else len(each.values) + len(each.others),
-                "paired": "yes" if each.paired else "no",
+                names[0]: float(values.mean()) if len(values) else None,
+                names[1]: float(second.mean()) if len(second) else None,
+                "worlds": len(values) if each.matched.paired else len(values) + len(second),
+                "paired": "yes" if each.matched.paired else "no",
+                "left out": each.matched.left_out,
                 "p": contrast.p,
                 "p Holm": corrected,
             }
         )
     note = (
-        f"Differences: {by} = {names[1]} minus {by} = {names[0]}, over worlds; worlds of one seed count once. Effect "
-        "size: in standard deviations of the pairs, or within conditions. p: permutation, exact where there are few; "
-        f"p Holm: corrected for these {len(found)} measures. Worlds that died out count where they have a value."
+        f"Differences: {by} = {names[1]} minus {by} = {names[0]}, within equal settings of all other factors; worlds "
+        f"of one seed count once. Intervals need {FOR_INTERVAL} pairs, or {FOR_INTERVAL} worlds of each condition. "
+        "Effect size: in standard deviations of the pairs, or within conditions. Left out: worlds without a "
+        "counterpart. p: of pairs, by exchanging their signs, exact if there are few; otherwise Welch's t test; p "
+        f"Holm: corrected for these {len(found)} measures. Worlds that died out count if they have a value."
     )
     note += f" The conditions differ in {', '.join(others)} too: the design does not cross them." if others else ""
     return make_table("contrast", f"What {by} changes", rows, note)

@@ -5,7 +5,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import polars as pl
@@ -17,14 +16,16 @@ from hedon.figure.style import BLUE, GREEN, MUTED, ORANGE, VERMILION, head, new_
 from hedon.jobs.store import Store
 from hedon.report.answer import Answer
 from hedon.statistic.interval import distance_interval
-from hedon.statistic.power import effect_seen, t_test_power, worlds_needed
+from hedon.statistic.power import Design, contrast_power, effect_seen, worlds_needed
 from hedon.sweep.collect import collect
-from hedon.sweep.contrast import by_seed, two_of
+from hedon.sweep.contrast import two_of
 from hedon.sweep.error import SweepError
+from hedon.sweep.match import known_values
 from hedon.sweep.plan import PLAN, load_plan
 from hedon.sweep.response import responses
 
 PAIRS, APART, ALONE = "pairs", "two conditions", "one condition"
+_TESTED: dict[str, Design] = {PAIRS: "pairs", APART: "independent", ALONE: "alone"}
 DESIGNS = {
     PAIRS: "two conditions, compared in pairs of equal seeds",
     APART: "two conditions of as many independent worlds each",
@@ -128,47 +129,66 @@ def spreads(
     Raises:
         SweepError: there are too few worlds, or the column has not two values.
     """
-    groups = [name for name in dict.fromkeys([*pilot.groups, *([by] if by else [])]) if name in pilot.table.columns]
+    if by is not None and by not in pilot.table.columns:
+        near = nearest(by, pilot.table.columns)
+        raise SweepError(f"--by {by}: is not a column of the worlds{f'; did you mean {near}?' if near else ''}")
+    named: list[str] = [*pilot.groups, *([by] if by is not None and by not in pilot.groups else [])]
+    groups = [name for name in named if name in pilot.table.columns]
+    for table in (pilot.table, *([other.table] if other is not None else [])):
+        _require_one_each(table, [name for name in groups if name in table.columns])
     found = []
     for name, title in pilot.shown.items():
-        if (pairs := _pairs(pilot, name, by, other, between)) is not None:
-            found += _spread(title, PAIRS, [pairs], len(pairs))
-        tables = (
-            [pilot.table] if not groups else [rows for _, rows in pilot.table.group_by(groups, maintain_order=True)]
-        )
+        if (pairs := _pairs(pilot, name, groups, by, other, between)) is not None:
+            found += _spread(title, PAIRS, pairs)
+        tables = pilot.table.partition_by(groups) if groups else [pilot.table]
         tables += [] if other is None or name not in other.table.columns else [other.table]
-        known = [by_seed(rows, name) for rows in tables]
-        worlds = [np.array(list(each.values()), np.float64) for each in known]
-        seeds = len(set().union(*known))
-        found += _spread(title, APART, worlds, seeds) + _spread(title, ALONE, worlds, seeds)
+        known = [known_values(rows, name, ()) for rows in tables]
+        found += _spread(title, APART, known) + _spread(title, ALONE, known)
     if not found:
         raise SweepError("worlds differ in no measure, or there are fewer than two of a condition: nothing can be told")
     return found
 
 
-def _pairs(pilot: Pilot, name: str, by: str | None, other: Pilot | None, between: str | None) -> Any:
-    """Differences of worlds of equal seeds, (pairs,); None where there are none."""
+def _require_one_each(table: pl.DataFrame, groups: Sequence[str]) -> None:
+    """Refuses tables in which several worlds of a seed belong to one condition, as far as its columns say."""
+    repeated = table.group_by(*dict.fromkeys(["seed", *groups])).len().filter(pl.col("len") > 1)
+    if repeated.height:
+        row = repeated.sort("seed").row(0, named=True)
+        of = "".join(f", {name} = {row[name]}" for name in groups)
+        raise SweepError(
+            f"{row['len']} worlds have seed {row['seed']}{of}: keep one row per seed and condition, or give the "
+            "folder of the sweep, which knows its factors"
+        )
+
+
+def _pairs(
+    pilot: Pilot, name: str, groups: Sequence[str], by: str | None, other: Pilot | None, between: str | None
+) -> list[pl.DataFrame] | None:
+    """Differences of worlds of equal seeds, a table per setting of the other factors; None if nothing is paired."""
     if by is not None:
-        if by not in pilot.table.columns:
-            near = nearest(by, pilot.table.columns)
-            raise SweepError(f"--by {by}: is not a column of the worlds{f'; did you mean {near}?' if near else ''}")
+        held = [each for each in groups if each != by]
         levels = two_of(by, pilot.table[by].unique(maintain_order=True), between)
-        one, two = (by_seed(pilot.table.filter(pl.col(by) == value), name) for value in levels)
+        sides = [pilot.table.filter(pl.col(by) == value) for value in levels]
     elif other is not None and name in other.table.columns:
-        one, two = by_seed(pilot.table, name), by_seed(other.table, name)
+        held, sides = [], [pilot.table, other.table]
     else:
         return None
-    return np.array([two[seed] - one[seed] for seed in sorted(one.keys() & two.keys())], np.float64)
+    one, two = (known_values(side, name, held) for side in sides)
+    pairs = one.join(two, on=["seed", *held], suffix="_other")
+    changes = pairs.select("seed", *held, value=pl.col("value_other") - pl.col("value"))
+    return changes.partition_by(held) if held else [changes]
 
 
-def _spread(title: str, design: str, groups: Sequence[Any], seeds: int) -> list[Spread]:
-    """The standard deviation within groups, pooled; none where it is not known or 0.
+def _spread(title: str, design: str, groups: Sequence[pl.DataFrame]) -> list[Spread]:
+    """The standard deviation of the values within groups, pooled; none if it is not known or 0.
 
     Worlds of equal seeds can be alike in all groups: then a group more tells nothing new. So the interval counts fewer
     degrees of freedom than there are seeds.
     """
-    within = np.concatenate([each - each.mean() for each in groups if len(each)] or [np.zeros(0)])
-    freedom = len(within) - sum(len(each) > 0 for each in groups)
+    values = [each["value"].to_numpy() for each in groups]
+    seeds = len(set[int]().union(*(each["seed"].to_list() for each in groups)))
+    within = np.concatenate([each - each.mean() for each in values if len(each)] or [np.zeros(0)])
+    freedom = len(within) - sum(len(each) > 0 for each in values)
     if freedom < 1 or not (within**2).sum() > 0:
         return []
     sd = math.sqrt(float((within**2).sum()) / freedom)
@@ -191,7 +211,7 @@ def power_answer(
     content = {"pilot": pilot, "power": power, "level": level, "effects": list(effects)}
     content["spreads"] = [vars(each) for each in found]
     intro = f"From {pilot}. " if pilot else ""
-    intro += f"A two-sided t test at {level:g} finds an effect with chance {power:g}."
+    intro += f"The tests of `hedon contrast`, at {level:g}, find an effect with chance {power:g}."
     figure = draw_power(found, effects, power, level)
     return Answer("power", "How many worlds are needed", content, tables, intro, figure)
 
@@ -202,12 +222,12 @@ def _needed(found: Sequence[Spread], effects: Sequence[float], power: float, lev
         for effect in effects:
             # A pilot knows its spread only so well: both bounds of it are answered too.
             needed, low, high = (
-                worlds_needed(effect / sd, power, level, paired=each.design != APART)
-                for sd in (each.sd, each.low, each.high)
+                worlds_needed(effect / sd, _TESTED[each.design], power, level) for sd in (each.sd, each.low, each.high)
             )
             row = {"measure": each.measure, "design": each.design, "effect": effect, "needed": needed}
             rows.append(row | {"low": low, "high": high, "sd": each.sd, "worlds": each.worlds})
-    note = f"needed: worlds of each condition for a chance of {power:g} to see the effect at {level:g}; its interval "
+    note = "needed: worlds of each condition, in one setting of all other factors, for a chance of "
+    note += f"{power:g} to see the effect at {level:g}; its interval "
     note += "is that of the sd, which comes from few worlds. " + _meanings(found)
     return make_table("power", "Worlds needed", rows, note)
 
@@ -216,9 +236,7 @@ def _seen(found: Sequence[Spread], power: float, level: float) -> ResultTable:
     rows = []
     for each in found:
         head = {"measure": each.measure, "design": each.design, "sd": each.sd, "worlds": each.worlds}
-        least = {
-            f"with {count}": effect_seen(count, power, level, paired=each.design != APART) * each.sd for count in COUNTS
-        }
+        least = {f"with {count}": effect_seen(count, _TESTED[each.design], power, level) * each.sd for count in COUNTS}
         rows.append(head | least)
     note = f"with N: the least effect that N worlds of each condition find with chance {power:g} at {level:g}; "
     return make_table("power", "Effects that are seen", rows, f"{note}--effect asks the other way. {_meanings(found)}")
@@ -240,13 +258,13 @@ def draw_power(found: Sequence[Spread], effects: Sequence[float], power: float, 
     """
     own = [each for each in found if each.measure == found[0].measure]
     effect = effects[0] if effects else 0.5 * own[0].sd
-    most = [worlds_needed(effect / each.sd, power, level, paired=each.design != APART) or 1000 for each in own]
+    most = [worlds_needed(effect / each.sd, _TESTED[each.design], power, level) or 1000 for each in own]
     worlds = np.unique(np.linspace(2, max(10, 1.5 * max(most)), 80).round())
     with styled():
         figure = new_figure(5.6, 3.4)
         axes = figure.subplots()
         for each, color in zip(own, _COLORS, strict=False):
-            chance = [t_test_power(effect / each.sd, count, level, paired=each.design != APART) for count in worlds]
+            chance = [contrast_power(effect / each.sd, int(count), _TESTED[each.design], level) for count in worlds]
             axes.plot(worlds, chance, color=color, linewidth=1.6, label=each.design)
         axes.axhline(power, color=MUTED, linewidth=0.8, linestyle="--")
         axes.set_ylim(0.0, 1.02)

@@ -3,6 +3,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 import pytest
 from rich.console import Console
 from synthetic_run import write_run
@@ -59,6 +60,17 @@ def test_extinct_worlds_count_but_not_among_the_survivors(tmp_path: Path) -> Non
     assert summary["mean_lifetime"]["worlds"] == 3
     assert summary["surviving"]["mean_lifetime"]["worlds"] == 2
     assert summary["surviving"]["alive"]["mean"] > summary["alive"]["mean"]
+
+
+def test_worlds_that_died_out_count_as_empty(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "run", intervals=40, worlds=3, extinct=1)
+    summary = summarize(open_run(folder))
+    rows = open_run(folder).population()
+    ended = rows.filter((pl.col("world") == 1) & (pl.col("step") > 0.9 * 40 * 1024))
+    assert summary["worlds"][1]["alive_mean"] == pytest.approx(ended["agent_steps"].sum() / (0.1 * 40 * 1024))
+    assert summary["worlds"][1]["mean_energy"] is None
+    alive = [world["alive_mean"] for world in summary["worlds"]]
+    assert summary["alive"]["mean"] == pytest.approx(sum(alive) / 3), "all three, the extinct one too"
 
 
 def test_a_run_without_rows_has_a_summary(tmp_path: Path) -> None:

@@ -91,8 +91,8 @@ def test_the_page_has_the_numbers_of_the_committed_founders():
     assert repeats_the_pilots(tests)
     for row in tests.iter_rows(named=True):
         digits = 2 if row["test"].startswith("hump") else 3
-        effect, low, high = (f"{row[name]:.{digits}f}".replace("-", "\N{MINUS SIGN}") for name in ("effect", "low", "high"))
-        assert f"{effect} ({low} … {high})" in page
+        effect, low, high = (f"{row[name]:.{digits}f}" for name in ("effect", "low", "high"))
+        assert f"{effect} ({low} … {high})".replace("-", "\N{MINUS SIGN}") in page
     outside = neutral_control(arms)
     assert f"excludes 0 in {outside['excluding_0'].sum()} of {outside['genes'].sum()} cases" in page
     for arm in arms.values():

@@ -75,6 +75,20 @@ def mean_alive(population: pl.DataFrame) -> float | None:
     return int(population["agent_steps"].sum()) / steps if steps else None
 
 
+def alive_after_extinction(population: pl.DataFrame, end: int) -> float:
+    """Agents alive, averaged over the last tenth of the steps for which a world was to run before it died out.
+
+    The steps after its last agent count as empty: 0 for a world that died out before that tenth.
+
+    Args:
+        population: table `population` of one world that died out.
+        end: steps for which it was to run [step], above 0.
+    """
+    require_one_species(population)
+    begin = (1 - TAIL) * end
+    return int(population.filter(pl.col("step") > begin)["agent_steps"].sum()) / (end - begin)
+
+
 def mean_energy(population: pl.DataFrame) -> float | None:
     """Energy of the living, mean over the ends of the given intervals, each weighted by the number alive.
 
