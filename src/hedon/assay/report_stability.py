@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.report import assay_answer, world_line, world_table
 from hedon.assay.sample import Sample
-from hedon.assay.stability import VERDICTS, Stability, measure_stability
+from hedon.assay.stability import VERDICTS, Stability, judge, measure_stability
 from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
 from hedon.report.answer import Answer
 
@@ -22,7 +22,7 @@ def stability_answer(points: Sequence[str], samples: Sequence[Sample]) -> Answer
         points: of the samples, as the user gave them.
         samples: of the assay.
     """
-    starts = [measure_stability(sample) for sample in samples]
+    starts = judge([measure_stability(sample) for sample in samples])
     content = [
         {
             "run": start.name,
@@ -63,6 +63,8 @@ def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
                     "score": course.score,
                     "p": course.p,
                     "p held": course.p_held,
+                    "p Holm": course.p_holm,
+                    "p held Holm": course.p_held_holm,
                     "verdict": course.verdict,
                 }
             )

@@ -2,15 +2,16 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
 
 from hedon.analysis.gene.course import WorldCourse, world_course
-from hedon.analysis.world.record import generator
+from hedon.analysis.world.record import SEED, generator
 from hedon.assay.resample import Floats
 from hedon.assay.sample import Sample
+from hedon.statistic.correction import holm
 from hedon.statistic.drift import rank_score
 from hedon.statistic.interval import Interval, mean_interval
 
@@ -38,7 +39,8 @@ class WeightCourse:
         score: mean standard normal score of the end among neutral genes.
         p: two-sided chance of such a score under drift (Stouffer).
         p_held: chance of ends as close to the start, or closer, under drift.
-        verdict: one of `VERDICTS`.
+        p_holm, p_held_holm: corrected for both tests of all reward genes and starts; for a neutral gene, for its two.
+        verdict: one of `VERDICTS`, by the corrected chances.
     """
 
     gene: str
@@ -50,7 +52,9 @@ class WeightCourse:
     score: float
     p: float
     p_held: float
-    verdict: str
+    p_holm: float = math.nan
+    p_held_holm: float = math.nan
+    verdict: str = "as drift"
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,13 +111,12 @@ def _weight(name: str, start: float, step: Floats, courses: Sequence[WorldCourse
             block[:, : course.neutral[name].shape[1]] = course.neutral[name][:walks]
         living = np.isfinite(stacked).sum(axis=0)
         null = np.where(living > 0, np.nansum(stacked, axis=0) / np.maximum(living, 1), np.nan)
-    scores = np.array([rank_score(course.mean[name][-1], course.neutral[name][:, -1]) for course in courses])
+    rng = np.random.default_rng(SEED)
+    scores = np.array([rank_score(course.mean[name][-1], course.neutral[name][:, -1], rng) for course in courses])
     held = [
-        rank_score(abs(course.mean[name][-1] - start), np.abs(course.neutral[name][:, -1] - start))
+        rank_score(abs(course.mean[name][-1] - start), np.abs(course.neutral[name][:, -1] - start), rng)
         for course in courses
     ]
-    p, p_held = _two_sided(scores), _below(np.array(held))
-    verdict = "leaves" if p < ALPHA else "held" if p_held < ALPHA else "as drift"
     return WeightCourse(
         gene=name,
         start=start,
@@ -122,10 +125,36 @@ def _weight(name: str, start: float, step: Floats, courses: Sequence[WorldCourse
         null=np.quantile(null, (0.025, 0.975), axis=0) if walks else np.full((2, len(step)), np.nan),
         end=mean_interval([course.mean[name][-1] for course in courses]),
         score=float(scores.mean()) if len(scores) else math.nan,
-        p=p,
-        p_held=p_held,
-        verdict=verdict,
+        p=_two_sided(scores),
+        p_held=_below(np.array(held)),
     )
+
+
+def judge(starts: Sequence[Stability]) -> list[Stability]:
+    """The same starts with verdicts, corrected by Holm: both tests of every reward gene and start are one family.
+
+    Args:
+        starts: All of an assay.
+    """
+    reward = [(start.name, name) for start in starts for name in start.point]
+    courses = {(start.name, name): course for start in starts for name, course in start.courses.items()}
+    corrected = _corrected([courses[key] for key in reward])
+    judged = dict(zip(reward, corrected, strict=True))
+    judged |= {key: _corrected([course])[0] for key, course in courses.items() if key not in judged}
+    return [replace(start, courses={name: judged[start.name, name] for name in start.courses}) for start in starts]
+
+
+def _corrected(courses: Sequence[WeightCourse]) -> list[WeightCourse]:
+    p = holm([chance for course in courses for chance in (course.p, course.p_held)])
+    return [
+        replace(
+            course,
+            p_holm=leaves,
+            p_held_holm=held,
+            verdict="leaves" if leaves < ALPHA else "held" if held < ALPHA else "as drift",
+        )
+        for course, leaves, held in zip(courses, p[::2], p[1::2], strict=True)
+    ]
 
 
 def _two_sided(scores: Floats) -> float:

@@ -6,8 +6,8 @@ large, whatever their sign, that it was carried a *distance* (chi-squared): a tr
 alone. Scores that are all too small say that it was *held* (the lower tail).
 """
 
-import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,8 +17,7 @@ from scipy import stats
 from hedon.statistic.interval import LEVEL, distance_interval, mean_bounds
 
 NAN = math.nan
-_EXACT = 12  # values up to which all sign flips are gone through
-_FLIPS = 10_000  # of more values, drawn at random
+_TIE = 1e-6  # in units of a trait: records keep it with seven digits, walks with more
 
 Floats = NDArray[np.float64]
 
@@ -51,14 +50,24 @@ class ScoreTest:
     drift_high: float = NAN
 
 
-def rank_score(value: float, null: Floats) -> float:
-    """The standard normal score of a value's rank among draws under the null hypothesis; ties count half.
+def rank_score(value: float, null: Floats, rng: np.random.Generator) -> float:
+    """The standard normal score of a value's rank among draws under the null hypothesis.
+
+    Among draws that equal the value, its rank is drawn at random: with a rank in their middle, a trait that hardly ever
+    changes would have scores that are all too small.
 
     Args:
         value: what is judged.
         null: independent draws under the null hypothesis, (draws,).
+        rng: source of chance for ties.
+
+    Returns:
+        NaN if all draws are equal, since such a trait cannot change.
     """
-    below = np.count_nonzero(null < value) + 0.5 * np.count_nonzero(null == value)
+    if np.ptp(null) <= _TIE:
+        return NAN
+    tied = np.abs(null - value) <= _TIE
+    below = np.count_nonzero((null < value) & ~tied) + int(rng.integers(0, np.count_nonzero(tied) + 1))
     return float(stats.norm.ppf((below + 0.5) / (len(null) + 1)))
 
 
@@ -66,8 +75,9 @@ def score_tests(scores: Floats) -> list[ScoreTest]:
     """The three tests, in the order direction, distance, held.
 
     Args:
-        scores: one per world, shape (n,).
+        scores: one per world, shape (n,); NaN is left out.
     """
+    scores = scores[np.isfinite(scores)]
     n = len(scores)
     if n == 0:
         return [ScoreTest(test, 0, NAN, NAN, NAN, NAN) for test in ("direction", "distance", "held")]
@@ -84,20 +94,15 @@ def score_tests(scores: Floats) -> list[ScoreTest]:
     ]
 
 
-def sign_flip_p(values: Floats, rng: np.random.Generator) -> float:
-    """Two-sided chance of a mean this far from 0 if each value were as likely of the other sign.
+def rank_sum_p(ranks: Sequence[int], of: Sequence[int]) -> float:
+    """Two-sided chance of ranks whose sum is this far from its middle, if each rank is as likely as any other.
 
     Args:
-        values: one per world, (n,).
-        rng: source of chance, used where there are too many signs to try them all.
+        ranks: one per world, from 1 on.
+        of: how many are ranked in each world.
     """
-    n = len(values)
-    if n <= _EXACT:
-        signs = np.array(list(itertools.product((-1.0, 1.0), repeat=n)))
-        extra = 0
-    else:
-        signs = rng.choice((-1.0, 1.0), (_FLIPS, n))
-        extra = 1  # the sample itself is one of the draws
-    sums = np.abs(signs @ values)
-    as_far = np.count_nonzero(sums >= abs(values.sum()) * (1.0 - 1e-12))
-    return float((as_far + extra) / (len(sums) + extra))
+    chances = np.ones(1)
+    for count in of:
+        chances = np.convolve(chances, np.full(count, 1.0 / count))
+    at = sum(ranks) - len(ranks)
+    return min(1.0, 2.0 * float(min(chances[: at + 1].sum(), chances[at:].sum())))

@@ -8,7 +8,7 @@ import numpy as np
 
 from hedon.analysis import LAST_AGENTS, SEED, ResultTable, WorldDrift, drift_tests, make_table, standard_drift
 from hedon.figure import NamedFigure, draw_scores
-from hedon.statistic import SHOWN_FROM
+from hedon.statistic import FOR_INTERVAL
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, present, sentences
 from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, POISON, POOR, SIZES
 
@@ -79,7 +79,7 @@ def _test_rows(
     """Both tests of each weight, without bounds below three worlds."""
     names = {**rewards, **MARKER}
     known = [[found for found in world if found.weight in names] for world in worlds]
-    for test in drift_tests(known, list(rewards), list(MARKER), np.random.default_rng(SEED)):
+    for test in drift_tests(known, list(rewards), list(MARKER), {}, np.random.default_rng(SEED)):
         if test.test == "marker":
             continue
         positive = sum(found.score > 0 for world in known for found in world if found.weight == test.weight)
@@ -91,7 +91,7 @@ def _test_rows(
             "positive": positive,
         }
         row |= {name: getattr(test, name) for name in ("effect", *_BOUNDS, "p", "p_holm")}
-        yield row if test.worlds >= SHOWN_FROM else row | dict.fromkeys(_BOUNDS)
+        yield row if test.worlds >= FOR_INTERVAL else row | dict.fromkeys(_BOUNDS)
 
 
 def _world_rows(scores: Scores) -> Iterator[dict[str, Any]]:

@@ -94,7 +94,13 @@ def test_selection_is_found(tmp_path: Path) -> None:
     worlds = read_worlds([open_run(write_run(tmp_path / "run", snapshot=False, **options))])
     found = {
         (t.weight, t.test): t
-        for t in drift_tests([world_drift(w, rng) for w in worlds], ("w_normal", "w_action"), ("neutral_1",), rng)
+        for t in drift_tests(
+            [world_drift(w, rng) for w in worlds],
+            ("w_normal", "w_action"),
+            ("neutral_1",),
+            {"w_normal": ("neutral_1",)},
+            rng,
+        )
     }
     assert found["w_normal", "direction"].p_holm < 0.01
     assert found["w_normal", "direction"].effect > 1
@@ -108,10 +114,10 @@ def test_two_modes_are_a_distance_without_a_direction() -> None:
     def world(score: float) -> list[WorldDrift]:
         return [WorldDrift("w", 0.0, score, -2, 0, 2, score, 1.0), WorldDrift("n", 0.0, 0.0, -2, 0, 2, 0.0, 1.0)]
 
-    tests = drift_tests([world(s) for s in (3, -3, 2.5, -2.5)], ("w",), ("n",), np.random.default_rng(1))
+    tests = drift_tests([world(s) for s in (3, -3, 2.5, -2.5)], ("w",), ("n",), {"w": ("n",)}, np.random.default_rng(1))
     direction, distance = tests[0], tests[1]
     assert direction.p == 1.0
-    assert direction.low < 0 < direction.high
+    assert direction.drift_low < 0 < direction.drift_high
     assert distance.p == pytest.approx(stats.chi2.sf(2 * 9 + 2 * 6.25, 4))
     assert distance.low > 1  # under drift it is 1
     marker = tests[-1]
@@ -129,7 +135,7 @@ def test_a_weight_that_is_held_is_found_in_the_lower_tail(scale: float, least: f
     rng = np.random.default_rng(6)
     p = []
     for _ in range(500):
-        tests = {t.test: t for t in drift_tests(scores(scale * rng.normal(size=10)), ("w",), (), rng)}
+        tests = {t.test: t for t in drift_tests(scores(scale * rng.normal(size=10)), ("w",), (), {}, rng)}
         p.append(tests["held"].p)
         assert tests["held"].p == pytest.approx(1.0 - tests["distance"].p)
     assert least <= np.mean(np.array(p) <= 0.05) <= most
@@ -138,7 +144,7 @@ def test_a_weight_that_is_held_is_found_in_the_lower_tail(scale: float, least: f
 def test_the_interval_by_drifts_own_spread_agrees_with_its_p() -> None:
     rng = np.random.default_rng(7)
     for shift in (0.0, 0.5, 1.0):
-        direction, distance, held = drift_tests(scores(rng.normal(shift, 1, 8)), ("w",), (), rng)
+        direction, distance, held = drift_tests(scores(rng.normal(shift, 1, 8)), ("w",), (), {}, rng)
         assert direction.drift_high - direction.drift_low == pytest.approx(2 * 1.959964 / np.sqrt(8), rel=1e-5)
         assert (direction.p < 0.05) == (not direction.drift_low < 0 < direction.drift_high)
         assert direction.p_holm == pytest.approx(min(1.0, holm([direction.p, distance.p, held.p])[0]))
@@ -146,5 +152,5 @@ def test_the_interval_by_drifts_own_spread_agrees_with_its_p() -> None:
 
 
 def test_without_worlds_there_is_no_test() -> None:
-    tests = drift_tests([[]], ("w",), ("n",), np.random.default_rng(1))
+    tests = drift_tests([[]], ("w",), ("n",), {"w": ("n",)}, np.random.default_rng(1))
     assert all(np.isnan(test.p) and test.worlds == 0 for test in tests)

@@ -1,20 +1,36 @@
+import itertools
+
 import numpy as np
 import pytest
 from scipy import stats
 
-from hedon.statistic.drift import rank_score, sign_flip_p
+from hedon.statistic.drift import rank_score, rank_sum_p, score_tests
 
 
 def test_rank_scores_are_normal() -> None:
-    null = np.arange(1999.0)
-    assert rank_score(999.0, null) == pytest.approx(0.0, abs=1e-9)
-    assert rank_score(1e9, null) == pytest.approx(stats.norm.ppf(1999.5 / 2000))
-    assert rank_score(-1e9, null) == pytest.approx(-rank_score(1e9, null))
+    null, rng = np.arange(1999.0), np.random.default_rng(1)
+    assert rank_score(999.5, null, rng) == pytest.approx(0.0, abs=1e-3)
+    assert rank_score(1e9, null, rng) == pytest.approx(stats.norm.ppf(1999.5 / 2000))
+    assert rank_score(-1e9, null, rng) == pytest.approx(-rank_score(1e9, null, rng))
 
 
-def test_sign_flips() -> None:
-    rng = np.random.default_rng(1)
-    assert sign_flip_p(np.array([1.0, 2.0, 3.0]), rng) == 2 / 8
-    assert sign_flip_p(np.array([1.0, -2.0, 3.0]), rng) == 6 / 8  # all but the two sums of 0
-    many = sign_flip_p(rng.normal(1.0, 1.0, 30), rng)
-    assert many < 0.001
+def test_a_trait_that_cannot_change_has_no_test() -> None:
+    score = rank_score(0.1, np.full(100, np.float32(0.1)), np.random.default_rng(1))
+    assert np.isnan(score)
+    assert all(np.isnan(test.p) and test.worlds == 0 for test in score_tests(np.full(5, score)))
+
+
+def test_ranks_among_ties_are_drawn() -> None:
+    """Half of the draws did not change, nor did the trait: its scores spread as wide as under drift."""
+    rng = np.random.default_rng(2)
+    null = np.concatenate([np.zeros(500), rng.normal(size=500)])
+    scores = [rank_score(float(rng.choice(null)), null, rng) for _ in range(4000)]
+    assert np.std(scores) == pytest.approx(1.0, abs=0.05)
+    assert stats.kstest(scores, "norm").pvalue > 1e-3
+
+
+def test_rank_sums() -> None:
+    every = [sum(ranks) for ranks in itertools.product(range(1, 5), repeat=3)]
+    assert rank_sum_p([4, 4, 4], [4, 4, 4]) == pytest.approx(2 / 64)
+    assert rank_sum_p([1, 2, 1], [4, 4, 4]) == pytest.approx(2 * np.mean(np.array(every) <= 4))
+    assert rank_sum_p([2, 1], [3, 1]) == 1.0

@@ -6,7 +6,7 @@ or stray further or less far. Where no gene can walk down a pedigree (`walked_pe
 whose law is their own, if there are enough of them; other genes have no control there.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from hedon.analysis.descent.walk import MutationLaw, mutation_law, neutral_genes
 from hedon.analysis.gene.course import standard_courses, standard_interval
-from hedon.analysis.gene.pedigree import walked_pedigree
+from hedon.analysis.gene.pedigree import like_neutral, walked_pedigree
 from hedon.analysis.world.population import history
 from hedon.analysis.world.record import WorldRecord, generator
 
@@ -95,22 +95,17 @@ def _laws(world: WorldRecord) -> dict[str, MutationLaw]:
     return {name: mutation_law(world.config, world.gene(name)) for name in world.weight_names}
 
 
-def _like_neutral(world: WorldRecord) -> Mapping[str, list[str]]:
-    """For each gene the recorded neutral genes that begin and mutate like it; none if a table gives the founders."""
-    if world.config.world.founders:
-        return {name: [] for name in world.weight_names}
-    genes = {name: world.gene(name) for name in world.weight_names}
-    return {
-        name: [each for each in world.neutral_names if (genes[each].law, genes[each].mutation) == (g.law, g.mutation)]
-        for name, g in genes.items()
-    }
+def _controls(world: WorldRecord) -> dict[str, list[str]]:
+    """For each gene the recorded neutral genes of its law, itself among them if it is one."""
+    alike = like_neutral(world)
+    return {name: [*others, *([name] if name in world.neutral_names else [])] for name, others in alike.items()}
 
 
 def _recorded_bands(worlds: Sequence[WorldRecord]) -> dict[str, DriftBand]:
     stacked = pl.concat([world.population.with_columns(world=pl.lit(i, pl.Int32)) for i, world in enumerate(worlds)])
     rows = history(stacked, (), worlds[0].neutral_names)
     bands = {}
-    for name, alike in _like_neutral(worlds[0]).items():
+    for name, alike in _controls(worlds[0]).items():
         courses = rows.unpivot([f"{each}_mean" for each in alike], index=["bin", "step"]).drop_nulls("value")
         low, high = (pl.col("value").quantile(bound, "linear") for bound in _RANGE)
         found = courses.group_by("bin").agg(pl.col("step").max(), pl.len(), low=low, high=high).sort("step")
@@ -123,7 +118,7 @@ def _recorded_bands(worlds: Sequence[WorldRecord]) -> dict[str, DriftBand]:
 
 def _recorded_genes(worlds: Sequence[WorldRecord], agents: Sequence[pl.DataFrame]) -> dict[str, Floats]:
     pooled = {}
-    for name, alike in _like_neutral(worlds[0]).items():
+    for name, alike in _controls(worlds[0]).items():
         if len(alike) * len(worlds) >= ENOUGH_GENES:
             values = [rows.select(alike).to_numpy().ravel().astype(np.float64) for rows in agents]
             pooled[name] = np.concatenate(values)

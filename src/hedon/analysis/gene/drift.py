@@ -2,11 +2,12 @@
 
 Two controls. The *walk*: in each world, the mean weight of those alive at the end is compared with neutral genes that
 mutate along the same pedigree (`descent.walk`), and its score among them is tested as `statistic.drift` says. The
-*marker*: whether a weight strays further from its start than the recorded neutral markers of the same worlds do.
+*marker*: whether a weight strays further from its start than the recorded neutral genes of its law do in the same
+worlds: under drift, it is as likely to be the first of them as the last.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
@@ -20,7 +21,7 @@ from hedon.analysis.gene.pedigree import walked_pedigree
 from hedon.analysis.gene.weight import last_lived_step
 from hedon.analysis.world.record import WorldRecord, generator
 from hedon.statistic.correction import holm
-from hedon.statistic.drift import ScoreTest, rank_score, score_tests, sign_flip_p
+from hedon.statistic.drift import ScoreTest, rank_score, rank_sum_p, score_tests
 from hedon.statistic.interval import mean_bounds
 
 NAN = math.nan
@@ -58,10 +59,11 @@ _KNOWN: WeakKeyDictionary[WorldRecord, dict[int | None, list[WorldDrift]]] = Wea
 class DriftTest(ScoreTest):
     """One weight of one condition against one control: walks, as its scores tell, or "marker".
 
-    For "marker" the effect is the mean of |displacement of the weight| − |displacement of the markers|, in units of the
-    weight, with Student's t interval, and p is from all sign flips of the differences. p_holm is corrected for all
-    reward weights and all tests against walks, or for all reward weights against the marker; NaN for neutral markers,
-    which are shown as a check of the method.
+    For "marker" the effect is the mean of |displacement of the weight| − |displacement of the neutral genes|, in units
+    of the weight, and p is that of the sum over worlds of its rank among them. Only neutral genes with the weight's
+    founders and mutations count; without any there is no such test. p_holm is corrected for all reward weights and all
+    tests against walks, or for all reward weights against neutral genes; NaN for neutral genes, which are shown as a
+    check of the method.
 
     Attributes:
         weight: genome column.
@@ -97,7 +99,7 @@ def world_drift(
     for name, law in laws.items():
         mean = float(world.agents[name].to_numpy()[sample].mean(dtype=np.float64))
         low, median, high = (float(bound) for bound in np.quantile(null[law], (0.025, 0.5, 0.975)))
-        score = rank_score(mean, null[law])
+        score = rank_score(mean, null[law], rng)
         p = float(2.0 * stats.norm.sf(abs(score)))
         results.append(WorldDrift(name, law.mean, mean, low, median, high, score, p, generation))
     return results
@@ -127,6 +129,7 @@ def drift_tests(
     worlds: Sequence[Sequence[WorldDrift]],
     reward_names: Sequence[str],
     neutral_names: Sequence[str],
+    alike: Mapping[str, Sequence[str]],
     rng: np.random.Generator,
 ) -> list[DriftTest]:
     """The tests of one condition.
@@ -134,12 +137,13 @@ def drift_tests(
     Args:
         worlds: of `world_drift`, one per world; empty ones are left out.
         reward_names: genome columns that enter the reward.
-        neutral_names: the neutral markers.
-        rng: for the sign flips, where there are too many for all of them.
+        neutral_names: the neutral genes.
+        alike: for each reward weight, the neutral genes of its law, as `like_neutral` gives them.
+        rng: source of chance for ties.
     """
     known = [{result.weight: result for result in world} for world in worlds if world]
     walked = [test for name in (*reward_names, *neutral_names) for test in _against_walks(name, known)]
-    marked = [_against_markers(name, neutral_names, known, rng) for name in reward_names if neutral_names]
+    marked = [_against_neutral(name, alike[name], known, rng) for name in reward_names if alike.get(name)]
     return [*_corrected(walked, neutral_names), *_corrected(marked, neutral_names)]
 
 
@@ -148,13 +152,16 @@ def _against_walks(name: str, worlds: Sequence[dict[str, WorldDrift]]) -> list[D
     return [DriftTest(weight=name, **vars(test)) for test in score_tests(scores)]
 
 
-def _against_markers(
-    name: str, markers: Sequence[str], worlds: Sequence[dict[str, WorldDrift]], rng: np.random.Generator
+def _against_neutral(
+    name: str, neutral: Sequence[str], worlds: Sequence[dict[str, WorldDrift]], rng: np.random.Generator
 ) -> DriftTest:
-    excess = np.array(
-        [_displacement(w[name]) - np.mean([_displacement(w[m]) for m in markers]) for w in worlds], np.float64
-    )
-    p = sign_flip_p(excess, rng) if len(excess) else NAN
+    excess, ranks = [], []
+    for world in worlds:
+        own, others = _displacement(world[name]), np.array([_displacement(world[each]) for each in neutral])
+        excess.append(own - float(others.mean()))
+        tied = np.count_nonzero(others == own)
+        ranks.append(1 + np.count_nonzero(others < own) + int(rng.integers(0, tied + 1)))
+    p = rank_sum_p(ranks, [len(neutral) + 1] * len(ranks)) if ranks else NAN
     return DriftTest("marker", len(excess), *mean_bounds(excess), p, weight=name)
 
 
