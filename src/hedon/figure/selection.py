@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from hedon.analysis.agent.cohort import COMPLETE
 from hedon.figure.style import draw_message, new_figure, say_empty, step_unit, styled
 from hedon.figure.trace import draw_zero_line
-from hedon.statistic.interval import SHOWN_FROM
+from hedon.statistic.minimum import FOR_INTERVAL
 
 _ROWS = {"children": "children", "lifespan": "length of life"}
 _LEAST_RANGE = 0.1  # of the gradient axis, so that noise does not look like selection
@@ -21,8 +21,8 @@ def draw_selection(
 ) -> Figure:
     """Standardized gradients over time: a panel per weight, a row per measure of fitness.
 
-    Points with bars are means over worlds with their 95 % interval; with fewer than three worlds, the worlds
-    themselves with the bootstrap's. Hollow points stand for cohorts that have not all died.
+    Points with bars are means over worlds with their 95 % interval; with too few worlds for one, the worlds themselves.
+    Hollow points stand for cohorts that have not all died.
 
     Args:
         windows: table `selection_window` of one condition.
@@ -37,7 +37,7 @@ def draw_selection(
         panels = figure.subplots(len(_ROWS), len(titles), sharex=True, sharey=True, squeeze=False)
         known = worlds.filter(pl.col("standard_gradient").is_not_null())
         unit, name = step_unit(float(worlds["to_step"].to_numpy().max(initial=0.0)))
-        few = worlds["seed"].n_unique() < SHOWN_FROM or windows.is_empty()
+        few = worlds["seed"].n_unique() < FOR_INTERVAL or windows.is_empty()
         for i, (fitness, label) in enumerate(_ROWS.items()):
             for axes, (weight, title) in zip(panels[i], titles.items(), strict=True):
                 draw_zero_line(axes)
@@ -63,20 +63,20 @@ def _draw_means(axes: Axes, windows: pl.DataFrame, worlds: pl.DataFrame, unit: f
     for rows in worlds.partition_by("seed"):
         axes.plot(rows["to_step"].to_numpy() / unit, rows["standard_gradient"], color=color, linewidth=0.7, alpha=0.3)
     rows = windows.drop_nulls(["mean", "low", "high"]).sort("to_step")
-    _bars(axes, rows["to_step"].to_numpy() / unit, rows.select("mean", "low", "high").to_numpy(), color)
+    x = rows["to_step"].to_numpy() / unit
+    axes.vlines(x, rows["low"].to_numpy(), rows["high"].to_numpy(), color=color, linewidth=1.3, alpha=0.8)
+    _points(axes, x, rows["mean"].to_numpy(), color, np.full(len(x), True))
 
 
 def _draw_worlds(axes: Axes, worlds: pl.DataFrame, unit: float, color: str) -> None:
     for k, rows in enumerate(worlds.sort("seed", "window").partition_by("seed")):
         steps = rows["to_step"].to_numpy()
         shift = 0.15 * k * (steps[0] if len(steps) == 1 else np.diff(steps).min())
-        names = ("standard_gradient", "standard_gradient_low", "standard_gradient_high")
         whole = rows["complete"].to_numpy() >= COMPLETE
-        _bars(axes, (steps - shift) / unit, rows.select(names).to_numpy(), color, whole)
+        _points(axes, (steps - shift) / unit, rows["standard_gradient"].to_numpy(), color, whole)
 
 
-def _bars(axes: Axes, x: np.ndarray, values: np.ndarray, color: str, whole: np.ndarray | None = None) -> None:
-    """Points with bars; the columns of the values are mean, low and high."""
-    axes.vlines(x, values[:, 1], values[:, 2], color=color, linewidth=1.3, alpha=0.8)
-    fill = [color] * len(x) if whole is None else [color if w else "white" for w in whole]
-    axes.scatter(x, values[:, 0], s=18, c=fill, edgecolors=color, linewidths=1.0, zorder=3)
+def _points(axes: Axes, x: np.ndarray, values: np.ndarray, color: str, whole: np.ndarray) -> None:
+    """Points, hollow for cohorts whose lives are not yet known in full."""
+    fill = [color if known else "white" for known in whole]
+    axes.scatter(x, values, s=18, c=fill, edgecolors=color, linewidths=1.0, zorder=3)

@@ -62,7 +62,7 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
 
     Args:
         courses: mean weight at equal intervals, per world, shape (times,); worlds may differ in length, not in the
-            interval. A course of fewer than four values, or one that changes in its last step at most, is left out.
+            interval. A course that is not usable is left out.
         neutral: courses of neutral genes of the same world at the same times, per world, shape (walks, times); the
             same number of walks in each.
         level: of the intervals.
@@ -70,7 +70,7 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
     Returns:
         None where no world is left.
     """
-    usable = [i for i, course in enumerate(courses) if len(course) > 3 and np.ptp(course[:-1]) > 0]
+    usable = [i for i, course in enumerate(courses) if is_usable(course)]
     if not usable:
         return None
     seen = [courses[i] for i in usable]
@@ -100,6 +100,15 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
         optimum_high=float(bounds[1]),
         p=p,
     )
+
+
+def is_usable(course: Floats) -> bool:
+    """Whether a course says anything of a pull: it has four values or more, and changes before its last step.
+
+    Args:
+        course: mean weight at equal intervals, (times,).
+    """
+    return len(course) > 3 and float(np.ptp(course[:-1])) > 0
 
 
 def _sums(courses: Floats) -> Floats:

@@ -15,8 +15,6 @@ standard deviations of contemporaries.
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.statistic.bootstrap import percentile_interval, resampled_sums
-
 STRATUM = 200
 """Births that are compared with one another. Individuals are compared with contemporaries alone: where traits and mean
 fitness both drift within a window, a comparison across it would show selection where there is none."""
@@ -52,101 +50,57 @@ def relative_fitness(values: Floats) -> Floats:
     return np.concatenate(parts)
 
 
-def linear_selection(
-    z: Floats, omega: Floats, cluster: NDArray[np.int64], rng: np.random.Generator, replicates: int
-) -> Floats:
-    """The four `STATISTICS` of each trait with their bounds, by measure of fitness.
+def linear_selection(z: Floats, omega: Floats) -> Floats:
+    """The four `STATISTICS` of each trait, by measure of fitness.
 
-    All measures are taken from the same bootstrap samples, since making these takes nearly all the time.
+    They have no interval: relatives share their fitness, and nothing within one world says by how much.
 
     Args:
         z: traits, deviations from contemporaries, shape (n, p).
         omega: relative fitness by each measure, shape (n, f).
-        cluster: who is drawn together: siblings share their mother's place and energy, shape (n,).
-        rng: source of chance.
-        replicates: bootstrap samples.
 
     Returns:
-        Value and bounds of the 95 % interval, shape (f, 3, 4, p).
+        Shape (f, 4, p); NaN for a trait that does not vary, and for a fitness that nobody has.
     """
     sd = z.std(axis=0)
     scale = np.where(sd > 0, sd, 1.0)
-    features = _features(z / scale, omega)
-    sums = np.concatenate([features.sum(axis=0, keepdims=True), resampled_sums(features, cluster, rng, replicates)])
-    varies = np.where(sd > 0, 1.0, np.nan)
-    tables = []
-    for k in range(omega.shape[1]):
-        s, beta = _solve(sums, z.shape[1], k)
-        # In units of the whole cohort's standard deviation, also within a bootstrap sample.
-        statistics = np.stack([s * scale, s * varies, beta / scale, beta], axis=1)  # (1 + replicates, 4, p)
-        low, high = percentile_interval(statistics[1:])
-        tables.append(np.stack([statistics[0], low, high]))
-    return np.stack(tables)
+    scaled = (z - z.mean(axis=0)) / scale
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s = scaled.T @ omega / omega.sum(axis=0)  # (p, f)
+    beta = np.linalg.pinv(scaled.T @ scaled / len(z), rcond=_ROUNDING, hermitian=True) @ s
+    beta[sd <= 0] = np.nan
+    varies = np.where(sd > 0, 1.0, np.nan)[:, None]
+    return np.stack([s * scale[:, None], s * varies, beta / scale[:, None], beta]).transpose(2, 0, 1)
 
 
-def quadratic_selection(
-    z: Floats, omega: Floats, cluster: NDArray[np.int64], rng: np.random.Generator, replicates: int
-) -> Floats:
-    """The standardized curvature γ·σ² along each trait with its bounds, by measure of fitness.
+def quadratic_selection(z: Floats, omega: Floats) -> Floats:
+    """The standardized curvature γ·σ² along each trait, by measure of fitness.
 
     By Frisch, Waugh and Lovell, the coefficient of the square is that of a regression of what the traits leave of
-    fitness on what they leave of the square. That part is taken from the whole cohort also in a bootstrap sample.
+    fitness on what they leave of the square.
 
     Args:
         z: traits, deviations from contemporaries, shape (n, p).
         omega: relative fitness by each measure, shape (n, f).
-        cluster: who is drawn together, shape (n,).
-        rng: source of chance.
-        replicates: bootstrap samples.
 
     Returns:
-        Value and bounds of the 95 % interval, shape (f, 3, p).
+        Shape (f, p); NaN for a trait that does not vary.
     """
     z = standardized(z)
-    n, p = z.shape
-    design = np.column_stack([np.ones(n), z])
+    design = np.column_stack([np.ones(len(z)), z])
     scale = np.std(z, axis=0)
     square = 0.5 * (z / np.where(scale > 0, scale, 1.0)) ** 2  # in units of the variance after drawing in
     rest_square, rest_omega = (y - design @ np.linalg.lstsq(design, y, rcond=None)[0] for y in (square, omega))
-    products = (rest_square[:, :, None] * rest_omega[:, None, :]).reshape(n, -1)
-    features = np.hstack([products, rest_square**2])
-    sums = np.concatenate([features.sum(axis=0, keepdims=True), resampled_sums(features, cluster, rng, replicates)])
     with np.errstate(divide="ignore", invalid="ignore"):
-        gamma = sums[:, :-p].reshape(len(sums), p, -1) / sums[:, -p:, None]
-    gamma[:, scale <= 0] = np.nan
-    low, high = percentile_interval(gamma[1:])
-    return np.stack([gamma[0], low, high]).transpose(2, 0, 1)
+        gamma = (rest_square.T @ rest_omega) / (rest_square**2).sum(axis=0)[:, None]
+    gamma[scale <= 0] = np.nan
+    return gamma.T
 
 
 def standardized(z: Floats) -> Floats:
     """Traits in standard deviations, drawn in to ± `REACH`; what does not vary is 0, shape (n, p) as given."""
     sd = z.std(axis=0)
     return np.clip(z / np.where(sd > _ROUNDING, sd, np.inf), -REACH, REACH)
-
-
-def _features(z: Floats, omega: Floats) -> Floats:
-    """What has to be summed over individuals for all moments: 1, z, the upper triangle of zz, each ω with its ωz."""
-    first, second = np.triu_indices(z.shape[1])
-    parts = [np.ones((len(z), 1)), z, z[:, first] * z[:, second]]
-    for column in omega.T:
-        parts += [column[:, None], column[:, None] * z]
-    return np.hstack(parts)
-
-
-def _solve(sums: Floats, p: int, measure: int) -> tuple[Floats, Floats]:
-    """Differentials and gradients on one measure of fitness from sums of features, each (samples, p)."""
-    means = sums[:, 1:] / sums[:, :1]
-    first, second = np.triu_indices(p)
-    begin = p + len(first) + measure * (1 + p)
-    z, zz = means[:, :p], means[:, p : p + len(first)]
-    omega, omega_z = means[:, begin : begin + 1], means[:, begin + 1 : begin + 1 + p]
-    covariance = np.empty((len(sums), p, p))
-    covariance[:, first, second] = covariance[:, second, first] = zz - z[:, first] * z[:, second]
-    with np.errstate(divide="ignore", invalid="ignore"):  # in a sample of nobody with children there is no differential
-        s = omega_z / omega - z
-    beta = (np.linalg.pinv(covariance, rcond=_ROUNDING, hermitian=True) @ s[..., None])[..., 0]
-    beta[:, covariance[0].diagonal() <= 0] = np.nan  # the first sample is the cohort itself
-    return s, beta
 
 
 def _strata(count: int) -> list[NDArray[np.int64]]:

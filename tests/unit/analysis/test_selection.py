@@ -16,21 +16,16 @@ def cohort(z: np.ndarray, children: np.ndarray, *, parent: np.ndarray | None = N
     return pl.DataFrame(table | {name: z[:, i].astype(np.float32) for i, name in enumerate(NAMES)})
 
 
-def test_the_truth_of_a_log_linear_fitness_is_found_and_covered() -> None:
+def test_the_truth_of_a_log_linear_fitness_is_found() -> None:
     """W Poisson with mean exp(b·z) and normal z: the gradient is b, the differential b·σ² (Lande & Arnold)."""
     rng = np.random.default_rng(2)
-    b, trials, hits, slopes, neutral = 0.3, 120, 0, [], 0
+    b, trials, slopes = 0.3, 120, []
     for _ in range(trials):
         z = rng.normal(0, [0.8, 1.0, 1.0], (300, 3))
         z[:, 2] += 0.7 * z[:, 0]  # a marker that rides along: a differential, but no gradient
-        found = selection(cohort(z, rng.poisson(np.exp(b * z[:, 0]))), NAMES, 1000, rng, replicates=300)[:3]
+        found = selection(cohort(z, rng.poisson(np.exp(b * z[:, 0]))), NAMES, 1000)[:3]
         slopes.append([row["gradient"] for row in found] + [found[2]["differential"]])
-        hits += found[0]["gradient_low"] <= b <= found[0]["gradient_high"]
-        neutral += found[2]["gradient_low"] <= 0 <= found[2]["gradient_high"]
     np.testing.assert_allclose(np.mean(slopes, axis=0), [b, 0, 0, b * 0.7 * 0.64], atol=0.03)
-    assert hits / trials > 0.88  # 95 %, less 3.5 standard errors of the count
-    assert neutral / trials > 0.88
-    assert neutral < trials
 
 
 def test_both_measures_of_fitness_are_regressed() -> None:
@@ -39,20 +34,18 @@ def test_both_measures_of_fitness_are_regressed() -> None:
     agents = cohort(z, rng.poisson(1.0, 300))
     lives = np.round(1000 * np.exp(0.3 * z[:, 1])).astype(int)
     agents = agents.with_columns(death_step=pl.col("birth_step") + lives)
-    found = selection(agents, NAMES, 10**6, rng, replicates=50)
+    found = selection(agents, NAMES, 10**6)
     design = np.column_stack([np.ones(300), z])
     for rows, fitness in ((found[:3], agents["children"].to_numpy()), (found[3:], lives)):
         slopes = np.linalg.lstsq(design, fitness / fitness.mean(), rcond=None)[0][1:]
         np.testing.assert_allclose([row["gradient"] for row in rows], slopes, rtol=1e-9)
-    assert found[4]["gradient_low"] > 0.2
 
 
 def test_raw_and_standardized_agree() -> None:
     rng = np.random.default_rng(3)
-    row = selection(cohort(rng.normal(0, 2, (400, 3)), rng.poisson(1.0, 400)), NAMES, 1000, rng)[0]
+    row = selection(cohort(rng.normal(0, 2, (400, 3)), rng.poisson(1.0, 400)), NAMES, 1000)[0]
     assert row["standard_gradient"] == pytest.approx(row["gradient"] * row["sd"])
     assert row["intensity"] == pytest.approx(row["differential"] / row["sd"])
-    assert row["gradient_low"] < row["gradient"] < row["gradient_high"]
     assert (row["fitness"], row["weight"], row["agents"], row["complete"]) == ("children", "w_normal", 400, 1.0)
 
 
@@ -62,12 +55,11 @@ def test_a_common_drift_of_weights_and_fitness_is_no_selection() -> None:
     z = np.stack([5 * time, 0 * time, 0 * time], axis=1) + rng.normal(size=(len(time), 3))
     fitness = rng.poisson(2 - 1.5 * time)
     omega = (fitness / fitness.mean())[:, None]
-    naive = linear_selection(z, omega, np.arange(len(z)), rng, 2)[0, 0, 2]
-    row = selection(cohort(z, fitness), NAMES, 10**6, rng, replicates=200)[0]
+    naive = linear_selection(z, omega)[0, 2]
+    row = selection(cohort(z, fitness), NAMES, 10**6)[0]
     assert naive[0] < -0.1
     assert abs(row["gradient"]) < 0.05
     assert row["sd"] == pytest.approx(1.0, abs=0.03)  # among contemporaries, without the drift
-    assert row["gradient_low"] < 0 < row["gradient_high"]
 
 
 def test_a_weight_that_does_not_vary_has_no_gradient_and_harms_no_other() -> None:
@@ -75,15 +67,15 @@ def test_a_weight_that_does_not_vary_has_no_gradient_and_harms_no_other() -> Non
     z = rng.normal(size=(300, 3))
     z[:, 1] = 0.1
     children = rng.poisson(1.0, 300)
-    rows = selection(cohort(z, children), NAMES, 1000, rng)
+    rows = selection(cohort(z, children), NAMES, 1000)
     assert np.isnan(rows[1]["gradient"])
     assert rows[1]["differential"] == 0
-    assert np.isfinite([rows[0]["gradient"], rows[0]["gradient_low"], rows[2]["gradient_high"]]).all()
+    assert np.isfinite([rows[0]["gradient"], rows[2]["gradient"]]).all()
 
 
 def test_too_few_agents_give_nothing() -> None:
     rng = np.random.default_rng(6)
     for n in (0, 10):
-        rows = selection(cohort(rng.normal(size=(n, 3)), np.ones(n, int)), NAMES, 1000, rng)
+        rows = selection(cohort(rng.normal(size=(n, 3)), np.ones(n, int)), NAMES, 1000)
         assert len(rows) == 6
         assert all(np.isnan(row["gradient"]) for row in rows)

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from hedon.analysis.agent.cohort import complete_share
 from hedon.analysis.agent.lifetime import durations
-from hedon.statistic.bootstrap import REPLICATES
 from hedon.statistic.selection import (
     FEWEST,
     STATISTICS,
@@ -24,76 +23,52 @@ FITNESS = ("children", "lifespan")
 Floats = NDArray[np.float64]
 
 
-def selection(
-    cohort: pl.DataFrame,
-    names: Sequence[str],
-    last_step: int,
-    rng: np.random.Generator,
-    replicates: int = REPLICATES,
-) -> list[dict[str, Any]]:
+def selection(cohort: pl.DataFrame, names: Sequence[str], last_step: int) -> list[dict[str, Any]]:
     """Selection on each weight within one birth cohort.
-
-    Intervals are percentiles of a bootstrap that draws sibships as wholes. They take sibships as independent; for
-    statements about a condition use the spread over worlds.
 
     Args:
         cohort: rows of the table `agents` of one world.
         names: genome columns; all of them enter the multiple regression.
         last_step: up to which the records reach [step].
-        rng: source of chance.
-        replicates: bootstrap samples.
 
     Returns:
         A row by fitness ("children" or "lifespan") and weight (genome column): agents, in the cohort; complete, the
         share of them that has died: below 1, fitness is cut short by the end of the records; mean_fitness, children or
         steps; sd of the weight among contemporaries; differential s, in units of the weight; intensity s/σ; gradient β,
-        per unit of the weight; standard_gradient β·σ; and of these four the bounds of the bootstrap's 95 % interval,
-        as gradient_low and so on. NaN where it cannot be estimated.
+        per unit of the weight; standard_gradient β·σ. NaN where it cannot be estimated.
     """
     traits = _Traits(cohort, names, last_step)
-    tables = np.full((len(FITNESS), 3, len(STATISTICS), len(names)), np.nan)
+    tables = np.full((len(FITNESS), len(STATISTICS), len(names)), np.nan)
     if traits.count >= FEWEST:
-        tables = linear_selection(traits.z, traits.relative_fitness(), traits.sibships(), rng, replicates)
+        tables = linear_selection(traits.z, traits.relative_fitness())
     sd = traits.z.std(axis=0) if traits.count else np.full(len(names), np.nan)
     return [
         traits.head(fitness, name)
         | {"mean_fitness": mean, "sd": float(sd[i])}
-        | {
-            f"{statistic}{bound}": float(table[b, k, i])
-            for k, statistic in enumerate(STATISTICS)
-            for b, bound in enumerate(("", "_low", "_high"))
-        }
+        | dict(zip(STATISTICS, map(float, table[:, i]), strict=True))
         for fitness, mean, table in traits.by_fitness(tables)
         for i, name in enumerate(names)
     ]
 
 
-def curvature(
-    cohort: pl.DataFrame,
-    names: Sequence[str],
-    last_step: int,
-    rng: np.random.Generator,
-    replicates: int = REPLICATES,
-) -> list[dict[str, Any]]:
+def curvature(cohort: pl.DataFrame, names: Sequence[str], last_step: int) -> list[dict[str, Any]]:
     """Curvature along each weight within one birth cohort, all other weights held fixed by their linear parts.
 
     Args:
         cohort: rows of the table `agents` of one world.
         names: genome columns.
         last_step: the end of the records [step].
-        rng: source of chance for the bootstrap.
-        replicates: bootstrap samples.
 
     Returns:
-        A row by fitness and weight, with agents and complete as for `selection`: curvature γ·σ², and low and high, the
-        bounds of the bootstrap's 95 % interval; NaN with fewer agents than `FEWEST`.
+        A row by fitness and weight, with agents and complete as for `selection`: curvature γ·σ²; NaN with fewer agents
+        than `FEWEST`.
     """
     traits = _Traits(cohort, names, last_step)
-    tables = np.full((len(FITNESS), 3, len(names)), np.nan)
+    tables = np.full((len(FITNESS), len(names)), np.nan)
     if traits.count >= FEWEST:
-        tables = quadratic_selection(traits.z, traits.relative_fitness(), traits.sibships(), rng, replicates)
+        tables = quadratic_selection(traits.z, traits.relative_fitness())
     return [
-        traits.head(fitness, name) | dict(zip(("curvature", "low", "high"), map(float, table[:, i]), strict=True))
+        traits.head(fitness, name) | {"curvature": float(table[i])}
         for fitness, _, table in traits.by_fitness(tables)
         for i, name in enumerate(names)
     ]
@@ -117,11 +92,6 @@ class _Traits:
     def relative_fitness(self) -> Floats:
         """Against contemporaries, a column per measure of fitness."""
         return np.stack([relative_fitness(self._fitness[name]) for name in FITNESS], axis=1)
-
-    def sibships(self) -> NDArray[np.int64]:
-        """One number per mother; each founder has one of its own, below 0."""
-        own = -1 - pl.int_range(pl.len(), dtype=pl.Int64)
-        return self._cohort.select(pl.coalesce(pl.col("parent_id").cast(pl.Int64), own)).to_series().to_numpy()
 
     def by_fitness(self, tables: Floats) -> Iterator[tuple[str, float, Floats]]:
         """Each measure of fitness with its mean and its table, which is NaN where nobody has any."""

@@ -3,32 +3,36 @@
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-import numpy as np
 import polars as pl
 
 from hedon.analysis.agent.cohort import COMPLETE, window_bounds, with_cohorts
-from hedon.analysis.world.record import Conditions, WorldRecord, generator, labels
+from hedon.analysis.world.record import Conditions, WorldRecord, labels
+from hedon.text import count
 
 _PER_WINDOW = 200  # agents that a window of births should hold
 _WINDOWS = 10  # of a run, at most
 
 
 def window_count(worlds: Sequence[WorldRecord]) -> int:
-    """Into how many windows by birth the runs of one condition are cut: ten, or fewer for small records."""
-    smallest = min((world.born.height for world in worlds), default=0)
+    """Into how many windows by birth the runs of one condition are cut: ten, or fewer for small records.
+
+    Worlds that died out do not count while others live on: one early death would leave a few long windows, none of which
+    is complete in a living world.
+    """
+    living = [world for world in worlds if world.extinct_step is None]
+    smallest = min((world.born.height for world in living or worlds), default=0)
     return max(1, min(_WINDOWS, smallest // _PER_WINDOW))
 
 
 def cohort_rows(
     conditions: Conditions,
-    measure: Callable[[WorldRecord, pl.DataFrame, np.random.Generator], Iterable[dict[str, Any]]],
+    measure: Callable[[WorldRecord, pl.DataFrame], Iterable[dict[str, Any]]],
 ) -> list[dict[str, Any]]:
     """Rows of every birth cohort of every world, each with its world, window and steps.
 
     Args:
         conditions: the worlds.
-        measure: gives the rows of one cohort, from its world, its rows of the table `agents` and the world's source of
-            chance.
+        measure: gives the rows of one cohort, from its world and its rows of the table `agents`.
     """
     rows = []
     for worlds in conditions.values():
@@ -36,17 +40,25 @@ def cohort_rows(
         for world in worlds:
             bounds = window_bounds(world.last_step, windows)
             cohorts = with_cohorts(world.born, world.last_step, windows)
-            rng = generator(world)
             for window in range(windows):
                 span = {"window": window, "from_step": int(bounds[window]), "to_step": int(bounds[window + 1])}
                 cohort = cohorts.filter(pl.col("window") == window)
-                rows += [labels(world) | span | row for row in measure(world, cohort, rng)]
+                rows += [labels(world) | span | row for row in measure(world, cohort)]
     return rows
 
 
 def complete_cohorts(rows: pl.DataFrame) -> pl.DataFrame:
     """The rows of cohorts of which nearly all have died, so that their lives are known."""
     return rows if rows.is_empty() else rows.filter(pl.col("complete") >= COMPLETE)
+
+
+def incomplete_note(rows: pl.DataFrame) -> str:
+    """How many worlds have no complete cohort, as a sentence for a note; empty if all have one."""
+    if rows.is_empty():
+        return ""
+    whole = rows.group_by("condition", "seed").agg(pl.col("complete").max())["complete"] >= COMPLETE
+    missing = len(whole) - int(whole.sum())
+    return f" {count(missing, 'world')} of {len(whole)} had no such cohort and are left out." if missing else ""
 
 
 def world_means(rows: pl.DataFrame, by: Sequence[str], quantities: Sequence[str]) -> pl.DataFrame:

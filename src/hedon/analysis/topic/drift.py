@@ -8,12 +8,14 @@ import numpy as np
 
 from hedon.analysis.gene.course import WorldCourse, standard_courses
 from hedon.analysis.gene.drift import drift_tests, standard_drift
+from hedon.analysis.gene.pedigree import like_neutral
 from hedon.analysis.gene.weight import end_mean
 from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.world.record import SEED, Conditions, labels, with_roles
 from hedon.statistic.correction import holm
-from hedon.statistic.mode import ENOUGH_WORLDS, modes
-from hedon.statistic.reversion import Reversion, reversion
+from hedon.statistic.minimum import FOR_VERDICT
+from hedon.statistic.mode import modes
+from hedon.statistic.reversion import Reversion, is_usable, reversion
 
 
 def drift(conditions: Conditions) -> list[ResultTable]:
@@ -24,14 +26,15 @@ def drift(conditions: Conditions) -> list[ResultTable]:
         for world, results in zip(worlds, found, strict=True):
             world_rows += [labels(world) | asdict(result) for result in results]
         names = worlds[0].reward_names, worlds[0].neutral_names
-        tests = drift_tests(found, *names, np.random.default_rng(SEED))
+        tests = drift_tests(found, *names, like_neutral(worlds[0]), np.random.default_rng(SEED))
         rows += [{"condition": condition, "weight": test.weight} | asdict(test) for test in tests]
     note = (
         "direction: mean score against neutral genes walked down the recorded pedigree, in standard deviations of "
         "drift; drift_low and drift_high are its bounds by the spread of drift itself, as p takes it. distance and "
         "held: root mean square score, 1 under drift, with the chance of a larger one (distance) or of a smaller one "
-        "(held). marker: how much further than the neutral markers the weight moved. p_holm is corrected for all "
-        "reward weights and tests of one control; neutral markers are there as a check."
+        "(held). A weight that cannot change has no test. marker: how much further the weight moved than the neutral "
+        "genes of its founders and mutations, if there are any. p_holm is corrected for all reward weights and tests "
+        "of one control; neutral genes are there as a check."
     )
     return [
         make_table("drift", "Weights of those alive at the end against drift", with_roles(rows, conditions), note),
@@ -74,17 +77,18 @@ def mode(conditions: Conditions) -> list[ResultTable]:
             rows.append({"condition": condition, "weight": name} | asdict(found))
     note = (
         "Dip test over worlds that live. power: chance to find two modes six standard deviations apart with as many "
-        f"worlds; below 0.8, so with fewer than {ENOUGH_WORLDS} worlds, a single mode is not called."
+        f"worlds, 0.8 with {FOR_VERDICT}. That no second mode is found does not show that there is one."
     )
     return [make_table("mode", "Modes of the worlds' mean weights", rows, note)]
 
 
 def _rows(courses: Sequence[WorldCourse], weights: Sequence[str]) -> list[dict[str, Any]]:
     """One row per weight, with strengths per generation."""
-    generations = sum(course.generations for course in courses)
     rows = []
     for weight in weights:
-        found = reversion([c.mean[weight] for c in courses], [c.neutral[weight] for c in courses])
+        used = [course for course in courses if is_usable(course.mean[weight])]
+        generations = sum(course.generations for course in used)
+        found = reversion([c.mean[weight] for c in used], [c.neutral[weight] for c in used])
         if found is not None and generations > 0:
             rows.append({"weight": weight} | _per_generation(found, generations))
     return rows

@@ -1,6 +1,7 @@
 """Topics about single lives: lifetime, food, reproduction, generation, energy."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,10 +11,11 @@ from hedon.analysis.agent.lifetime import durations
 from hedon.analysis.agent.reproduction import reproduction
 from hedon.analysis.descent.generation import generation_time
 from hedon.analysis.result import ResultTable, make_table, over_worlds
-from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, world_means
+from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, incomplete_note, world_means
 from hedon.analysis.world.budget import energy_budget
 from hedon.analysis.world.population import run_tail
 from hedon.analysis.world.record import Conditions, WorldRecord, labels
+from hedon.statistic.interval import Interval, mean_interval
 from hedon.statistic.survival import SurvivalCurve, exposure_mean, restricted_mean, survival_curve
 
 _AGES = 200  # points of a survival curve in the records of the analysis
@@ -35,17 +37,16 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
         "restricted_mean": "restricted mean, censored lives counted",
         "restricted_bias": "error of the dead's restricted mean",
         "exposure_mean": "steps lived per death",
-        "median": "median",
     }
+    summary = over_worlds(worlds_table.rows, (), quantities)
+    summary += [row for name, worlds in conditions.items() if (row := _median_row(name, worlds)) is not None]
     note = (
         "The restricted mean is that of lifetimes cut off at an age that 20 agents of each living world reached; the "
         "error is what the dead alone give instead, minus it. Steps per death are the mean life if age did not matter. "
         "Of a branch only those count that were born in it."
     )
     return [
-        make_table(
-            "lifetime", "Lifetimes, means over worlds [step]", over_worlds(worlds_table.rows, (), quantities), note
-        ),
+        make_table("lifetime", "Lifetimes, means over worlds [step]", summary, note),
         worlds_table,
         make_table(
             "survival", "Survival curves (Kaplan and Meier, with pointwise 95 % intervals)", curves, shown=False
@@ -78,7 +79,7 @@ def food(conditions: Conditions) -> list[ResultTable]:
 
 def reproductive_success(conditions: Conditions) -> list[ResultTable]:
     """Children per life, by birth cohort."""
-    rows = cohort_rows(conditions, lambda _world, cohort, _rng: [reproduction(cohort)])
+    rows = cohort_rows(conditions, lambda _world, cohort: [reproduction(cohort)])
     worlds_table = make_table("reproduction_world", "Children per life, by world and birth cohort", rows, shown=False)
     quantities = {
         "mean": "children per life",
@@ -90,7 +91,7 @@ def reproductive_success(conditions: Conditions) -> list[ResultTable]:
     note = (
         f"Over cohorts of which at least {100 * COMPLETE:.0f} % have died. If children came by chance alone, in "
         "lives of exponential length, the opportunity would be 1 + 1 / mean."
-    )
+    ) + incomplete_note(worlds_table.rows)
     return [
         make_table("reproduction", "Children per life, means over worlds", over_worlds(by_world, (), quantities), note),
         worlds_table,
@@ -141,6 +142,23 @@ def energy(conditions: Conditions) -> list[ResultTable]:
     note += "".join(said for name, said in further.items() if name in quantities)
     title = "Energy budget per 1000 steps lived by an agent, means over worlds"
     return [make_table("energy", title, summary, note), worlds_table]
+
+
+def _median_row(condition: str, worlds: Sequence[WorldRecord]) -> dict[str, Any] | None:
+    """The median lifetime over worlds, or of all worlds together if some have none yet; None if that is unknown too.
+
+    A mean over the worlds that have a median would leave out those with long lives.
+    """
+    lives = [durations(world.born, world.last_step) for world in worlds]
+    medians = [survival_curve(*life).quantile()[0] for life in lives]
+    head = {"condition": condition}
+    if all(median is not None for median in medians):
+        return head | {"quantity": "median"} | vars(mean_interval(medians))
+    lived, died = (np.concatenate(part) for part in zip(*lives, strict=True))
+    pooled = survival_curve(lived, died).quantile()[0]
+    if pooled is None:
+        return None
+    return head | {"quantity": "median of all worlds together"} | vars(Interval(pooled, None, None, len(worlds)))
 
 
 def _common_age(worlds: Sequence[WorldRecord], curves: Sequence[SurvivalCurve]) -> float:

@@ -7,7 +7,13 @@ from hedon.analysis.agent.cohort import COMPLETE, genome_distribution, window_bo
 from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.gene.selection import curvature, selection
 from hedon.analysis.result import ResultTable, make_table, over_worlds
-from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, window_count, world_means
+from hedon.analysis.topic.cohort import (
+    cohort_rows,
+    complete_cohorts,
+    incomplete_note,
+    window_count,
+    world_means,
+)
 from hedon.analysis.world.record import Conditions, labels, with_roles
 from hedon.statistic.price import price
 
@@ -39,13 +45,12 @@ def selection_topic(conditions: Conditions) -> list[ResultTable]:
     """Selection differentials and gradients by birth cohort."""
     rows = cohort_rows(
         conditions,
-        lambda world, cohort, rng: selection(cohort, world.weight_names, world.last_step, rng),
+        lambda world, cohort: selection(cohort, world.weight_names, world.last_step),
     )
     worlds_table = make_table(
         "selection_world",
         "Selection by world and birth cohort",
         rows,
-        "Bounds are percentiles of a bootstrap over sibships within a world.",
         shown=False,
     )
     whole = complete_cohorts(worlds_table.rows)
@@ -58,7 +63,7 @@ def selection_topic(conditions: Conditions) -> list[ResultTable]:
         "Change of relative fitness per standard deviation of the weight: the gradient with the other weights held "
         "fixed, the differential by whatever route. Means over cohorts of which at least "
         f"{100 * COMPLETE:.0f} % have died, then over worlds."
-    )
+    ) + incomplete_note(worlds_table.rows)
     summary = with_roles(over_worlds(by_world, ("fitness", "weight"), quantities), conditions)
     return [
         make_table("selection", "Selection on each weight", summary, note),
@@ -71,13 +76,12 @@ def curvature_topic(conditions: Conditions) -> list[ResultTable]:
     """Curvature of fitness along each weight, over birth cohorts and worlds."""
     rows = cohort_rows(
         conditions,
-        lambda world, cohort, rng: curvature(cohort, world.weight_names, world.last_step, rng),
+        lambda world, cohort: curvature(cohort, world.weight_names, world.last_step),
     )
     worlds_table = make_table(
         "curvature_world",
         "Curvature of fitness by world and birth cohort",
         rows,
-        "Bounds are percentiles of a bootstrap over sibships within a world.",
         shown=False,
     )
     by_world = world_means(complete_cohorts(worlds_table.rows), ("fitness", "weight"), ("curvature",))
@@ -86,13 +90,10 @@ def curvature_topic(conditions: Conditions) -> list[ResultTable]:
     note = (
         "Quadratic selection gradient, per variance of the weight, with the linear parts of all weights held fixed: "
         "below 0 selection is stabilizing, above 0 disruptive. Means over cohorts of which at least "
-        f"{100 * COMPLETE:.0f} % have died, then over worlds. Neutral markers are curved too where agents far out have "
-        "few children for another reason, such as being born later: read what is left without their mean."
-    )
-    quantities = {
-        "curvature": "standardized quadratic gradient",
-        "excess": "the same, less the mean of the other neutral markers",
-    }
+        f"{100 * COMPLETE:.0f} % have died, then over worlds, less the mean of the other neutral genes: these are "
+        "curved too if agents far out have few children for another reason, such as being born later."
+    ) + incomplete_note(worlds_table.rows)
+    quantities = {"excess": "standardized quadratic gradient, less that of neutral genes"}
     summary = with_roles(over_worlds(by_world, ("fitness", "weight"), quantities), conditions)
     return [make_table("curvature", "Curvature of fitness along each weight", summary, note), worlds_table]
 
