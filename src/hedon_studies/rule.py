@@ -1,7 +1,7 @@
 """How studies of the classics answer: an effect with its interval first, then yes, no or open by one rule.
 
-A test has one number per world, or per pair of worlds, and a side on which the claim holds. Fewer than `WORLDS` worlds
-leave it open. Otherwise it is yes if the effect lies on that side, no if on the other one, with a chance below `CHANCE`
+A test has one number per world, or per pair of worlds, and a side on which the claim holds. Fewer than `FOR_VERDICT`
+numbers leave it open. Otherwise it is yes if the effect lies on that side, no if on the other, with p below `CHANCE`
 after Holm's correction for all named tests of the study; else it is open.
 """
 
@@ -14,10 +14,8 @@ from numpy.typing import ArrayLike
 from scipy import stats
 
 from hedon.analysis import ResultTable, make_table
-from hedon.statistic import LEVEL, holm, mean_interval, share_interval
+from hedon.statistic import FOR_VERDICT, LEVEL, holm, mean_interval, share_interval
 
-WORLDS = 30
-"""Worlds below which a test stays open."""
 CHANCE = 0.05
 """Chance, after correction, from which on an answer stays open."""
 YES, NO, OPEN = "yes", "no", "open"
@@ -30,6 +28,7 @@ class Test:
     Attributes:
         name: of the claim.
         worlds: that it is made of.
+        values: how many of these have a value.
         extinct: how many of these died out; they count.
         above: whether the claim holds above 0, rather than below.
         effect: measured; NaN where it cannot be, as what follows.
@@ -39,6 +38,7 @@ class Test:
 
     name: str
     worlds: int
+    values: int
     extinct: int
     above: bool
     effect: float = np.nan
@@ -67,10 +67,10 @@ def slope_test(name: str, x: ArrayLike, y: ArrayLike, extinct: int, *, above: bo
     """
     across, values = np.asarray(x, np.float64), np.asarray(y, np.float64)
     if len(across) < 3 or np.ptp(across) == 0:
-        return Test(name, len(across), extinct, above)
+        return Test(name, len(across), len(across), extinct, above)
     slope, _, _, p, error = np.asarray(stats.linregress(across, values)).tolist()
     reach = float(stats.t.ppf((1 + LEVEL) / 2, len(across) - 2)) * error
-    return Test(name, len(across), extinct, above, slope, slope - reach, slope + reach, p)
+    return Test(name, len(across), len(across), extinct, above, slope, slope - reach, slope + reach, p)
 
 
 def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above: bool) -> Test:
@@ -85,11 +85,11 @@ def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above:
     """
     known = np.asarray(values, np.float64)
     if len(known) < 2:
-        return Test(name, worlds, extinct, above)
+        return Test(name, worlds, len(known), extinct, above)
     found = mean_interval(known.tolist())
     mean, low, high = (np.nan if bound is None else bound for bound in (found.mean, found.low, found.high))
     p = float(np.asarray(stats.ttest_1samp(known, 0.0))[1])
-    return Test(name, worlds, extinct, above, mean, low, high, p)
+    return Test(name, worlds, len(known), extinct, above, mean, low, high, p)
 
 
 def count_test(name: str, count: int, worlds: int, extinct: int, chance: float, *, above: bool) -> Test:
@@ -104,10 +104,10 @@ def count_test(name: str, count: int, worlds: int, extinct: int, chance: float, 
         above: whether the claim holds above 0.
     """
     if not worlds:
-        return Test(name, worlds, extinct, above)
+        return Test(name, worlds, 0, extinct, above)
     low, high = share_interval(count, worlds)
     p = float(stats.binomtest(count, worlds, chance).pvalue)
-    return Test(name, worlds, extinct, above, count / worlds - chance, low - chance, high - chance, p)
+    return Test(name, worlds, worlds, extinct, above, count / worlds - chance, low - chance, high - chance, p)
 
 
 def verdict_table(name: str, tests: Sequence[Test], note: str = "", named: int = 0) -> ResultTable:
@@ -133,16 +133,17 @@ def verdict_table(name: str, tests: Sequence[Test], note: str = "", named: int =
             "p": test.p,
             "p (Holm)": p,
             "worlds": test.worlds,
+            "with a value": test.values,
             "died out": test.extinct,
         }
         for test, p in zip(tests, corrected, strict=True)
     ]
     finite = [{k: None if isinstance(v, float) and np.isnan(v) else v for k, v in row.items()} for row in rows]
-    rule = f"An answer is open with fewer than {WORLDS} worlds, or with p (Holm) of {CHANCE:g} or more."
+    rule = f"An answer is open with fewer than {FOR_VERDICT} values, or with p (Holm) of {CHANCE:g} or more."
     return make_table(name, "What the worlds say of the claims", finite, f"{rule} {note}".strip())
 
 
 def _answer(test: Test, p: float) -> str:
-    if test.worlds < WORLDS or not p < CHANCE:
+    if test.values < FOR_VERDICT or not p < CHANCE:
         return OPEN
     return YES if (test.effect > 0) == test.above else NO

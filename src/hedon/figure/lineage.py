@@ -10,7 +10,8 @@ from matplotlib.lines import Line2D
 
 from hedon.figure.style import INK, MUTED, draw_message, new_figure, number_log_axis, step_unit, styled
 from hedon.figure.trace import draw_zero_line
-from hedon.statistic.interval import SHOWN_FROM, mean_interval
+from hedon.statistic.interval import mean_interval
+from hedon.statistic.minimum import FOR_INTERVAL
 
 
 def draw_lineages(lines: pl.DataFrame, titles: Mapping[str, str], colors: Mapping[str, str]) -> Figure:
@@ -74,7 +75,7 @@ def _over_worlds(rows: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndarra
     table = []
     for part in numbered.sort("point").partition_by("point"):
         interval = mean_interval(part[column])
-        bounds = (interval.low, interval.high) if interval.worlds >= SHOWN_FROM else (None, None)
+        bounds = (interval.low, interval.high) if interval.worlds >= FOR_INTERVAL else (None, None)
         table.append([float(part["step"].to_numpy().mean()), interval.mean, *bounds])
     x, mean, low, high = np.array(table, np.float64).reshape(-1, 4).T
     return x, mean, low, high

@@ -7,7 +7,8 @@ import polars as pl
 from matplotlib.axes import Axes
 
 from hedon.figure.style import PALE, step_unit
-from hedon.statistic.interval import SHOWN_FROM, mean_interval
+from hedon.statistic.interval import mean_interval
+from hedon.statistic.minimum import FOR_INTERVAL
 
 
 def draw_traces(
@@ -48,7 +49,7 @@ def draw_traces(
         if len(x) and world["world"][0] in gone:
             axes.plot(x[-1], y[-1], marker="x", markersize=5, color=color, alpha=0.8)
     x, mean, low, high = over_worlds(history, column)
-    if len(worlds) >= SHOWN_FROM:
+    if len(worlds) >= FOR_INTERVAL:
         axes.fill_between(x / unit, low, high, color=color, alpha=0.13, linewidth=0)
     marker = "o" if len(x) == 1 else ""
     axes.plot(
@@ -71,14 +72,14 @@ def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndar
         column: what is averaged; null is left out.
 
     Returns:
-        Step, mean, and lower and upper bound of its 95 % interval (NaN for fewer than three worlds), each
+        Step, mean, and lower and upper bound of its 95 % interval (NaN for fewer than five worlds), each
         (bins,).
     """
     rows = []
     known = history.filter(pl.col(column).is_not_null())
     for bin_rows in known.partition_by("bin"):
         interval = mean_interval(bin_rows[column])
-        low, high = (interval.low, interval.high) if interval.worlds >= SHOWN_FROM else (None, None)
+        low, high = (interval.low, interval.high) if interval.worlds >= FOR_INTERVAL else (None, None)
         rows.append([bin_rows["step"].to_numpy().max(), interval.mean, low, high])
     table = np.array(sorted(rows), np.float64).reshape(-1, 4)
     return table[:, 0], table[:, 1], table[:, 2], table[:, 3]

@@ -1,12 +1,13 @@
 """The figures of a report: what each asks, and how it is read."""
 
 from hedon.figure.named import FigureKind
+from hedon.statistic.minimum import FOR_INTERVAL
 
 HISTORY = FigureKind(
     "history",
     "When did they evolve, and how much of it is drift?",
     "Mean weight of the living over time, and that of each neutral gene, which nothing depends on. Thin lines are "
-    "worlds, the thick line is their mean, and the band around it its 95 % interval, from three worlds on. Shaded in "
+    "worlds, the thick line is their mean, and the band around it its 95 % interval, from five worlds on. Shaded in "
     "gray is where drift alone would have this weight in 95 % of worlds: neutral genes with its own founders and "
     "mutations, walked down the pedigrees of these worlds. A cross marks where a world died out. A weight that stays "
     "within the gray may have drifted.",
@@ -26,7 +27,7 @@ POPULATION = FigureKind(
     "How do the worlds fare?",
     "Agents alive, births and deaths, births that failed and why, energy, food eaten and generation over time. Births "
     "fail where the world is full or where there is no free place near the parent. Thin lines are worlds, thick "
-    "lines are means over worlds, and bands are their 95 % intervals, from three worlds on. Where births balance "
+    "lines are means over worlds, and bands are their 95 % intervals, from five worlds on. Where births balance "
     "deaths, the population has settled.",
 )
 REGIME = FigureKind(
@@ -49,7 +50,7 @@ SELECTION = FigureKind(
     "How many more children, above, or how much longer a life, below, an agent has per standard deviation of a "
     "weight, as a share of the mean, with the other weights held fixed: the standardized selection gradient, by time "
     "of birth. Points with bars are means over worlds with their 95 % interval, and thin lines are worlds. With fewer "
-    "than three worlds each world is shown with the bootstrap's interval; hollow points are cohorts that have not all "
+    f"than {FOR_INTERVAL} worlds each world is shown, without an interval; hollow points are cohorts that have not all "
     "died. Where the bars hold 0, there is no evidence of selection.",
 )
 LINEAGE = FigureKind(
@@ -57,7 +58,7 @@ LINEAGE = FigureKind(
     "Whose descendants are left?",
     "Left, the number of lines that lead to those alive at the end, a line per world: few lines early on mean that "
     "few agents of that time have descendants. Right of it, the mean weight over these lines, thick, with its 95 % "
-    "interval from three worlds on, and over all alive at that time, thin and gray. Where the thick line lies above "
+    "interval from five worlds on, and over all alive at that time, thin and gray. Where the thick line lies above "
     "the thin one, the ancestors of the survivors had more of the weight than others of their time.",
 )
 DEMOGRAPHY = FigureKind(

@@ -6,7 +6,7 @@ from typing import Any
 import polars as pl
 
 from hedon.analysis.result import ResultTable
-from hedon.statistic.interval import SHOWN_FROM
+from hedon.statistic.minimum import FOR_INTERVAL
 
 NOTHING = "-"
 """Stands for a number that there is not."""
@@ -89,7 +89,7 @@ def _cell(row: Mapping[str, Any], column: str, merged: bool) -> str:
 
 
 def _interval(row: Mapping[str, Any]) -> str:
-    if row["low"] is None or row["high"] is None or row.get("worlds", SHOWN_FROM) < SHOWN_FROM:
+    if row["low"] is None or row["high"] is None or row.get("worlds", FOR_INTERVAL) < FOR_INTERVAL:
         return ""
     return f"{_format(row['low'])} … {_format(row['high'])}"
 

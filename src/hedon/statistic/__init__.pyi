@@ -9,11 +9,12 @@ from .factorial import Factors as Factors
 from .factorial import all_effects as all_effects
 from .factorial import fit_factorial as fit_factorial
 from .interval import LEVEL as LEVEL
-from .interval import SHOWN_FROM as SHOWN_FROM
 from .interval import distance_interval as distance_interval
 from .interval import mean_interval as mean_interval
 from .interval import share_interval as share_interval
 from .interval import spread_interval as spread_interval
+from .minimum import FOR_INTERVAL as FOR_INTERVAL
+from .minimum import FOR_VERDICT as FOR_VERDICT
 from .mode import modes as modes
 from .power import contrast_power as contrast_power
 from .power import effect_seen as effect_seen

@@ -108,10 +108,10 @@ def independent_contrast(values: Floats, others: Floats) -> Contrast:
     pooled = math.sqrt(((n - 1) * values.var(ddof=1) + (m - 1) * others.var(ddof=1)) / (n + m - 2))
     if pooled == 0:  # no world differs from its like
         return Contrast(difference, difference, difference, math.nan, _permuted((values, others), _change))
-    test = stats.ttest_ind(others, values, equal_var=False)
-    bounds = test.confidence_interval(LEVEL) if min(n, m) >= FOR_INTERVAL else (math.nan, math.nan)
+    p = float(np.asarray(stats.ttest_ind(others, values, equal_var=False))[1])
+    bounds = difference_interval(others, values)[1:] if min(n, m) >= FOR_INTERVAL else (math.nan, math.nan)
     effect = difference / pooled * (1.0 - 3.0 / (4.0 * (n + m) - 9.0))
-    return Contrast(difference, float(bounds[0]), float(bounds[1]), effect, float(test.pvalue))
+    return Contrast(difference, *bounds, effect, p)
 
 
 def _change(x: Floats, y: Floats, axis: int) -> Floats:
@@ -128,20 +128,29 @@ def _permuted(samples: tuple[Floats, ...], statistic: Any, kind: str = "independ
 
 
 def spread_ratio_interval(values: Floats, others: Floats, level: float = LEVEL) -> tuple[float, float, float]:
-    """Ratio of two standard deviations, the first over the second, with its interval from the F law.
+    """Ratio of two spreads, the first over the second, with an interval that holds for heavy tails too.
 
-    It takes both groups as normally distributed; with heavy tails it is too narrow. NaN where the second does not vary.
+    The spread of a group is the geometric mean of the distances from its median, and the interval is Welch's for the
+    mean of their logarithms. It replaces the F law, which takes groups as normal and finds differences in a fifth of
+    pairs of groups with Cauchy tails and the same spread. The idea is that of Levene's test by Brown and Forsythe
+    (1974), Journal of the American Statistical Association 69, 364-367.
 
     Args:
-        values: first group, (n,).
-        others: second group, (m,).
+        values: first group, (n,), two or more.
+        others: second group, (m,), two or more.
         level: of confidence.
 
     Returns:
-        Ratio, lower and upper bound.
+        Ratio, lower and upper bound; NaN if a group does not vary.
     """
-    spread = float(others.std(ddof=1))
-    ratio = float(values.std(ddof=1)) / spread if spread > 0 else math.nan
-    tail, degrees = 0.5 * (1.0 - level), (len(values) - 1, len(others) - 1)
-    low, high = (ratio / math.sqrt(float(stats.f.ppf(q, *degrees))) for q in (1.0 - tail, tail))
+    one, other = (_log_distances(each) for each in (values, others))
+    if min(len(one), len(other)) < 2:
+        return math.nan, math.nan, math.nan
+    ratio, low, high = (math.exp(bound) for bound in difference_interval(one, other, level))
     return ratio, low, high
+
+
+def _log_distances(values: Floats) -> Floats:
+    """Logarithms of the distances from the median, without those of 0, such as that of a value in the middle."""
+    distances = np.abs(values - np.median(values))
+    return np.log(distances[distances > 0])

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from hedon.statistic.minimum import FOR_INTERVAL
+
 LEVEL = 0.95
-SHOWN_FROM = 3
-"""Worlds that an interval must have to be shown: over two it is too wide to be of use, and misleads."""
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Interval:
 
     Attributes:
         mean: None where no world has a value.
-        low, high: bounds of the interval; None with fewer than two worlds, which say nothing about their spread.
+        low, high: bounds of the interval; None with fewer than `FOR_INTERVAL` worlds.
         worlds: how many have a value.
     """
 
@@ -42,8 +42,8 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL) -> Inter
     if known.size == 0:
         return Interval(None, None, None, 0)
     mean = float(known.mean())
-    if known.size == 1:
-        return Interval(mean, None, None, 1)
+    if known.size < FOR_INTERVAL:
+        return Interval(mean, None, None, known.size)
     half = float(stats.t.ppf(0.5 + level / 2, known.size - 1) * known.std(ddof=1) / math.sqrt(known.size))
     return Interval(mean, mean - half, mean + half, known.size)
 
@@ -82,6 +82,21 @@ def share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, fl
     tail = 0.5 * (1.0 - level)
     low, high = (float(stats.beta.ppf(q, count + 0.5, of - count + 0.5)) for q in (tail, 1.0 - tail))
     return low if count else 0.0, high if count < of else 1.0
+
+
+def exact_share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, float]:
+    """Clopper and Pearson's (1934) interval of a share, for verdicts: each bound is an exact one-sided binomial test.
+
+    Args:
+        count: how many have it.
+        of: how many there are.
+        level: of confidence; each bound alone errs at most half as often as the rest.
+
+    Returns:
+        Lower and upper bound.
+    """
+    found = stats.binomtest(count, of).proportion_ci(level, method="exact")
+    return float(found.low), float(found.high)
 
 
 def spread_interval(values: NDArray[np.float64], level: float = LEVEL) -> tuple[float, float, float]:

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from hedon.analysis.response import Response, common_to, figures
-from hedon.statistic.interval import SHOWN_FROM, Interval, mean_interval
+from hedon.statistic.interval import Interval, mean_interval
+from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.study.census import missing, sentences
 from hedon.study.item import Condition, ItemInputs, Scale
 
@@ -53,7 +54,7 @@ def shown_interval(values: Sequence[float | None], response: Response | None = N
         logs = mean_interval([response.scaled(value) for value in known])
         mean, low, high = (response.unscaled(number) for number in (logs.mean, logs.low, logs.high))
         found = Interval(mean, low, high, logs.worlds)
-    return found if found.worlds >= SHOWN_FROM else Interval(found.mean, None, None, found.worlds)
+    return found if found.worlds >= FOR_INTERVAL else Interval(found.mean, None, None, found.worlds)
 
 
 def read_change(before: str, after: str) -> str:

@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 from hedon.analysis.world.extinction import species_loss, world_extinction
 from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.statistic.contrast import fisher_mid_p
+from hedon.statistic.minimum import FOR_FULL_LENGTH
 from hedon.study.claim import Claim, Order
 from hedon.study.estimate import Estimate, compare, estimate
 
 HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"
 DIFFERS, NOT_SHOWN = "differs", "no difference shown"
 NO_SPREAD, NO_COUNT = "the source gives no spread", "the source gives no count"
-FEWEST_WORLDS = 3
-TOO_FEW, CROSSES = f"fewer than {FEWEST_WORLDS} worlds", "the interval crosses the border"
+TOO_FEW, CROSSES = f"fewer than {FOR_FULL_LENGTH} worlds", "the interval crosses the border"
 LEVEL = 0.05
 """Level of the second question: the chance of finding a difference where there is none."""
 _UNTESTABLE = {"mean": NO_SPREAD, "ratio": NO_SPREAD, "setting": ""}
@@ -114,10 +114,9 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
     why = found.reason or (CROSSES if name == UNDECIDED and len(figures) else "")
     if claim.over_worlds == "setting":
         remarks = []
-    elif len(figures) < FEWEST_WORLDS:
-        name, why = UNDECIDED, TOO_FEW
-    elif shortfall:
-        name, why = UNDECIDED, shortfall
+    elif len(figures) < FOR_FULL_LENGTH or shortfall:
+        few = TOO_FEW if len(figures) < FOR_FULL_LENGTH else ""
+        name, why = UNDECIDED, "; ".join(filter(None, (few, shortfall)))
     p, against = math.nan, _UNTESTABLE.get(claim.over_worlds, NO_COUNT)
     if claim.over_worlds == "share":
         p, against = _against_reported(claim, int(np.count_nonzero(figures > 0)), len(figures), 0)
@@ -142,10 +141,8 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
     value, low, high = compare(order.comparison, parts[0], parts[1], order.level) if fewest > 1 else (math.nan,) * 3
     name = place(low, high, order.low, order.high)
     why = CROSSES if name == UNDECIDED else ""
-    if fewest < FEWEST_WORLDS:
-        name, why = UNDECIDED, TOO_FEW
-    elif shortfalls:
-        name, why = UNDECIDED, "; ".join(shortfalls)
+    if fewest < FOR_FULL_LENGTH or shortfalls:
+        name, why = UNDECIDED, "; ".join([*([TOO_FEW] if fewest < FOR_FULL_LENGTH else []), *shortfalls])
     condition = f"{first[0].condition} against {second[0].condition}"
     found = Estimate(value, low, high)
     return _verdict(order, condition, name, found, math.nan, NO_SPREAD, sum(map(len, parts)), [why, *remarks])
@@ -176,7 +173,7 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
     name = place(found.low, found.high, claim.low, claim.high) if found.worlds else UNDECIDED
     unknown = found.worlds - found.extinct - found.followed
     reasons = [CROSSES if name == UNDECIDED else ""]
-    if found.worlds < FEWEST_WORLDS:
+    if found.worlds < FOR_FULL_LENGTH:
         name, reasons = UNDECIDED, [TOO_FEW]
     if unknown:
         reasons.append(f"{unknown} of {found.worlds} worlds live and end before step {claim.steps:,}")

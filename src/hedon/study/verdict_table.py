@@ -11,7 +11,7 @@ from hedon.study.verdict import verdicts
 
 _NOTE = (
     "verdict: the 95 % interval over worlds lies within the region in which the claim holds, outside of it, or "
-    "across its border. Fewer than three worlds, or shorter ones than the claim asks for, decide nothing. "
+    "across its border. Fewer than six worlds, or shorter ones than the claim asks for, decide nothing. "
     "against_reported is another question: whether our share differs from the source's count, by p_reported (mid-p "
     "Fisher). That no difference is shown does not mean that there is none. Where a source gives no spread, means "
     "cannot be compared."

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, styled
-from hedon.statistic.interval import SHOWN_FROM, Interval
+from hedon.statistic.interval import Interval
+from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.sweep.response import Point, binned, points
 
 WIDE = 30.0
@@ -104,7 +105,7 @@ def _draw_curve(axes: Axes, table: pl.DataFrame, factor: str, name: str, made: S
     means = [mean.mean for _, mean in line if mean.mean is not None]
     axes.plot([x for x, _ in line], means, color=BLUE, marker="o", markersize=4, zorder=3)
     for x, mean in line:
-        if mean.low is not None and mean.high is not None and mean.worlds >= SHOWN_FROM:
+        if mean.low is not None and mean.high is not None and mean.worlds >= FOR_INTERVAL:
             axes.plot([x, x], [mean.low, mean.high], color=BLUE, linewidth=1.4, zorder=2)
     if not numbers:
         _name_values(axes, [str(value) for value in place])
@@ -136,8 +137,8 @@ def _remark(means: Iterable[Interval]) -> str:
     least, most = min(worlds, default=0), max(worlds, default=0)
     if most <= 1:
         return "One world in each cell: it tells nothing of chance."
-    if most < SHOWN_FROM:
-        return f"Mean over {most} worlds in each cell; intervals are shown from {SHOWN_FROM} worlds on."
+    if most < FOR_INTERVAL:
+        return f"Mean over {most} worlds in each cell; intervals are shown from {FOR_INTERVAL} worlds on."
     count = f"{least}" if least == most else f"{least} to {most}"
     return f"Mean over {count} worlds in each cell ± half of its 95 % interval."
 
@@ -145,7 +146,7 @@ def _remark(means: Iterable[Interval]) -> str:
 def _cell(mean: Interval) -> str:
     value, low, high = mean.mean, mean.low, mean.high
     text = _plain(value)
-    if mean.worlds < SHOWN_FROM or low is None or high is None or not math.isfinite(high - low):
+    if mean.worlds < FOR_INTERVAL or low is None or high is None or not math.isfinite(high - low):
         return text
     return f"{text}\n±{_plain(0.5 * (high - low))}"
 

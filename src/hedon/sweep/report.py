@@ -15,7 +15,8 @@ from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.report.markdown import pipe_table
 from hedon.report.table import cells
-from hedon.statistic.interval import SHOWN_FROM, Interval
+from hedon.statistic.interval import Interval
+from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.sweep.error import SweepError
 from hedon.sweep.figure import draw_curves, draw_map
 from hedon.sweep.plan import SweepPlan
@@ -81,7 +82,7 @@ def _page(plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str], figure
         "",
         f"{table.height} of {count(plan.worlds, 'world')} ({count(len(plan.conditions), 'setting')} x "
         f"{count(len(plan.seeds), 'seed')}) of {count(plan.steps, 'step')}; {int(table['extinct'].sum())} died out"
-        f"{_alone(table)}. Intervals are of 95 %, over worlds, from {SHOWN_FROM} worlds on.",
+        f"{_alone(table)}. Intervals are of 95 %, over worlds, from {FOR_INTERVAL} worlds on.",
         "",
     ]
     if plan.factors and len(plan.conditions) <= MOST_CELLS:
@@ -118,7 +119,7 @@ def settings_table(
         for point in points(table, factors, name):
             row = rows.setdefault(point.at, {**dict(zip(factors, point.at, strict=True)), "worlds": counts[point.at]})
             row[title] = _interval(point.mean)
-    note = f"Means over worlds, with intervals of 95 % from {SHOWN_FROM} worlds on."
+    note = f"Means over worlds, with intervals of 95 % from {FOR_INTERVAL} worlds on."
     note += f" The first {most} of {len(rows):,} settings; table.parquet has all." if len(rows) > most else ""
     return make_table("sweep", f"Sweep {plan.name}", list(rows.values())[:most], note)
 
@@ -126,7 +127,7 @@ def settings_table(
 def _interval(point: Interval) -> str:
     if point.mean is None:
         return ""
-    known = point.worlds >= SHOWN_FROM and point.low is not None and point.high is not None
+    known = point.worlds >= FOR_INTERVAL and point.low is not None and point.high is not None
     return f"{point.mean:.4g} ({point.low:.3g} … {point.high:.3g})" if known else f"{point.mean:.4g}"
 
 

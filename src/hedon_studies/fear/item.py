@@ -89,7 +89,7 @@ def _deaths(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         return
     indices = world_indices(worlds.values())
     rates = {label: death_rates(stack(group, "population", indices)) for label, group in worlds.items()}
-    caption = "Deaths per 10,000 steps lived, by cause: the mean over worlds, with its 95 % interval from three on."
+    caption = "Deaths per 10,000 steps lived, by cause: the mean over worlds, with its 95 % interval from five on."
     yield NamedFigure(name, question, draw_causes(rates), caption)
     rows = [
         {"species": label, "seed": world.seed, "deaths": world.agents["death_step"].count()}

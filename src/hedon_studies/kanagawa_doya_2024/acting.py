@@ -39,7 +39,7 @@ _PANELS = {
 
 _DRAWN = (
     "Thin lines are worlds, the thick line is the mean over the worlds of a condition, and the band is its 95 % "
-    "interval, from three worlds on. Where the bands overlap throughout, nothing is seen of the weights' precision."
+    "interval, from five worlds on. Where the bands overlap throughout, nothing is seen of the weights' precision."
 )
 
 

@@ -49,7 +49,7 @@ _DRAWN = (
     f"Left, foods eaten by agents of like weight of food, over lives of at least {WINDOWS} windows of learning: the "
     "further left a curve rises, the smaller a weight is enough. Right, the mean weight of food of the living over "
     "time. Thin lines are worlds, thick lines are means over the worlds of a condition, at the left where more than "
-    "half of them have such agents; the band is a 95 % interval, from three worlds on."
+    "half of them have such agents; the band is a 95 % interval, from five worlds on."
 )
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from hedon.analysis import ResultTable, generator, make_table
 from hedon.figure import NamedFigure
-from hedon.statistic import SHOWN_FROM
+from hedon.statistic import FOR_INTERVAL
 from hedon.study import Condition, ItemInputs, sentences
 from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, Drift, compare, gene_drift
 from hedon_studies.kanagawa_doya_2024.figure.prediction import draw_predictions
@@ -84,11 +84,11 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
 
 
 def _prediction_rows(label: str, drifts: Sequence[Drift], worlds: int) -> Iterator[dict[str, Any]]:
-    """Genes of one world share its pedigree, so bounds and chances are given from three worlds on, not three pairs."""
+    """Genes of one world share its pedigree, so bounds and chances are given from five worlds on, not three pairs."""
     for comparison in COMPARISONS:
         for weight in (*GENES, _ALL):
             mine = [drift for drift in drifts if weight in (drift["weight"], _ALL)]
             if mine:
                 found = {"condition": label, "compared": comparison, "weight": weight, "worlds": worlds}
                 found |= compare(mine, comparison)
-                yield found if worlds >= SHOWN_FROM else found | dict.fromkeys(("low", "high", "p_sign"))
+                yield found if worlds >= FOR_INTERVAL else found | dict.fromkeys(("low", "high", "p_sign"))

@@ -35,7 +35,7 @@ _FATE = (
     "is Jeffreys'. The paper replaced seeds that died out."
 )
 _SURVIVOR = (
-    "Means over worlds with 95 % intervals from three worlds on, geometric for lifetime and food; standing: neither "
+    "Means over worlds with 95 % intervals from five worlds on, geometric for lifetime and food; standing: neither "
     "extinct nor heading for it. The paper's figures are of 5 survivors of 10,240,000 steps."
 )
 

@@ -9,7 +9,7 @@ from hedon.study import Condition, Item, ItemInputs, describe, missing, present,
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, POISON, POOR, SIZES
 
 _READ = (
-    "Thin: one world; thick: the mean over the worlds that live, with its 95 % interval from three worlds on; a cross "
+    "Thin: one world; thick: the mean over the worlds that live, with its 95 % interval from five worlds on; a cross "
     "ends the line of a world that died out. Gray: where drift alone would have the weight in 95 % of worlds: neutral "
     "genes with its own founders and mutations, walked down the same pedigrees."
 )

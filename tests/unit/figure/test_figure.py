@@ -95,12 +95,12 @@ def test_history_draws_the_mean_over_worlds(tmp_path: Path) -> None:
     assert thick[0].get_ydata() == pytest.approx(expected.sort("step")["w_normal_mean"].to_numpy())
 
 
-def test_band_needs_three_worlds(tmp_path: Path) -> None:
-    rows = history(open_run(write_run(tmp_path / "run", intervals=4, worlds=3)).population(), ("normal",))
+def test_band_needs_five_worlds(tmp_path: Path) -> None:
+    rows = history(open_run(write_run(tmp_path / "run", intervals=4, worlds=5)).population(), ("normal",))
     _, mean, low, high = over_worlds(rows, "alive")
     assert (low <= mean).all()
     assert (mean <= high).all()
-    _, mean, low, _ = over_worlds(rows.filter(rows["world"] < 2), "alive")
+    _, mean, low, _ = over_worlds(rows.filter(rows["world"] < 4), "alive")
     assert np.isfinite(mean).all()
     assert np.isnan(low).all()
 

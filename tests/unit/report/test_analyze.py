@@ -120,15 +120,15 @@ def test_what_is_printed_on_a_narrow_terminal(analysis: Analysis) -> None:
             assert all(cell in text for row in cells(result)[1] for cell in row if cell[:1].isdigit())
 
 
-def test_cells_hide_intervals_over_two_worlds_and_show_what_tells_rows_apart() -> None:
+def test_cells_hide_intervals_over_few_worlds_and_show_what_tells_rows_apart() -> None:
     rows = [
-        {"condition": "a", "quantity": "x", "mean": 1.0, "low": 0.5, "high": 1.5, "worlds": 2},
-        {"condition": "b", "quantity": "x", "mean": 2e-17, "low": 0.5, "high": 1.5, "worlds": 3},
+        {"condition": "a", "quantity": "x", "mean": 1.0, "low": 0.5, "high": 1.5, "worlds": 4},
+        {"condition": "b", "quantity": "x", "mean": 2e-17, "low": 0.5, "high": 1.5, "worlds": 5},
         {"condition": "b", "quantity": "y", "mean": float("nan"), "low": None, "high": None, "worlds": 0},
     ]
     headers, shown = cells(make_table("t", "T", rows))
     assert headers == ["condition", "quantity", "mean", "95 % interval", "worlds"]
-    assert shown == [["a", "x", "1.00", "", "2"], ["b", "x", "0", "0.500 … 1.50", "3"], ["b", "y", "", "", "0"]]
+    assert shown == [["a", "x", "1.00", "", "4"], ["b", "x", "0", "0.500 … 1.50", "5"], ["b", "y", "", "", "0"]]
     assert escape_markdown("w_normal [step], 95 % > 0.5") == "w_normal \\[step\\], 95 % \\> 0.5"
     assert pipe_table(["a"], [["x|y"]]) == "| a |\n| --- |\n| x\\|y |\n"
 

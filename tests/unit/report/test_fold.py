@@ -12,7 +12,7 @@ from hedon.report.table import cells
 
 def test_neutral_genes_are_one_row_of_each_group():
     rows = [
-        {"condition": condition, "weight": weight, "mean": mean, "low": 0.0, "high": 9.0, "worlds": 3, "p": p}
+        {"condition": condition, "weight": weight, "mean": mean, "low": 0.0, "high": 9.0, "worlds": 5, "p": p}
         for condition in ("a", "b")
         for weight, mean, p in (("w_food", 1.0, 0.5), ("neutral_1", 2.0, 0.01), ("neutral_2", 4.0, 0.2))
     ]

@@ -158,7 +158,7 @@ def test_changed_settings_and_damaged_files_are_shown(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def analysis(tmp_path_factory: pytest.TempPathFactory) -> Analysis:
     folder = tmp_path_factory.mktemp("figures") / "run"
-    return analyze([open_run(write_run(folder, intervals=60, worlds=3, snapshot=False))])
+    return analyze([open_run(write_run(folder, intervals=60, worlds=5, snapshot=False))])
 
 
 def test_figures_draw_their_tables(analysis: Analysis) -> None:

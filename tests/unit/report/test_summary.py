@@ -27,7 +27,7 @@ def test_every_key_is_documented_and_every_documented_key_is_there(tmp_path: Pat
 
 
 def test_numbers_agree_with_the_tables(tmp_path: Path) -> None:
-    run = open_run(write_run(tmp_path / "run", intervals=40, worlds=3, food_kinds=("normal", "poison")))
+    run = open_run(write_run(tmp_path / "run", intervals=40, worlds=5, food_kinds=("normal", "poison")))
     summary, agents = summarize(run), run.agents()
     for index, world in enumerate(summary["worlds"]):
         mine = agents.filter(agents["world"] == index)
@@ -118,11 +118,11 @@ def test_the_papers_figures_stand_beside_its_own_conditions_only(tmp_path: Path,
     assert "paper" not in text.lower()
 
 
-def test_the_table_has_intervals_from_three_worlds_on(tmp_path: Path) -> None:
+def test_the_table_has_intervals_from_five_worlds_on(tmp_path: Path) -> None:
     lines = []
-    for worlds in (2, 3):
+    for worlds in (4, 5):
         summary = summarize(open_run(write_run(tmp_path / f"{worlds}", intervals=20, worlds=worlds)))
-        assert summary["alive"]["low"] is not None
+        assert (summary["alive"]["low"] is None) == (worlds < 5)
         lines += [line for line in _print(summary).splitlines() if "agents alive" in line]
     assert "…" not in lines[0].replace("130 … 150", "")
     assert "…" in lines[1].replace("130 … 150", "")
@@ -154,7 +154,7 @@ def test_the_page_of_the_figures_has_their_captions() -> None:
 
 
 def test_a_narrow_terminal_has_every_number_whole(tmp_path: Path) -> None:
-    summary = summarize(open_run(write_run(tmp_path / "run", intervals=40, worlds=3)))
+    summary = summarize(open_run(write_run(tmp_path / "run", intervals=40, worlds=5)))
     text = _print(summary, width=60)
     assert max(map(len, text.splitlines())) <= 60
     for world in summary["worlds"]:

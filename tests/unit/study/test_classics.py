@@ -8,9 +8,10 @@ import pytest
 from command import hedon
 
 from hedon.assay import Lines
+from hedon.statistic import FOR_VERDICT as WORLDS
 from hedon_studies.lifespan_and_plasticity.study import CHANGING, CONSTANT, named_tests
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
-from hedon_studies.rule import NO, OPEN, WORLDS, YES, count_test, mean_test, slope_test, verdict_table
+from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, slope_test, verdict_table
 
 
 def answers(*tests) -> list[str]:
@@ -36,6 +37,12 @@ def test_few_worlds_and_chance_leave_it_open() -> None:
     empty = slope_test("empty", [], [], 0, above=True)
     assert few.p < 1e-6
     assert answers(few, none, empty) == [OPEN, OPEN, OPEN]
+
+
+def test_three_values_of_thirty_worlds_leave_it_open() -> None:
+    few = mean_test("few", [5.0, 5.1, 4.9], WORLDS, 27, above=True)
+    assert few.p < 0.001
+    assert answers(few) == [OPEN]
 
 
 def test_an_effect_that_two_worlds_cannot_tell_is_said_in_words() -> None:

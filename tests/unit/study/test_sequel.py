@@ -75,16 +75,16 @@ def seen(role: str) -> str:
 
 
 def test_planted_fear_is_found() -> None:
-    found = asked(group("predator", 5, seen("hunter"), -_PUSH))
+    found = asked(group("predator", 6, seen("hunter"), -_PUSH))
     fearful = found["fear often evolves"]
-    assert (fearful.verdict, fearful.value, fearful.worlds) == ("holds", 1.0, 5)
+    assert (fearful.verdict, fearful.value, fearful.worlds) == ("holds", 1.0, 6)
     assert found["liking predators in some worlds"].verdict == "undecided"
     assert found["liking one's own kind in some worlds"].verdict == "undecided"
 
 
 @pytest.mark.parametrize(("role", "claim"), [("own", "one's own kind"), ("hunter", "predators")])
 def test_planted_liking_is_found(role: str, claim: str) -> None:
-    liked = group("predator", 2, seen(role), _PUSH) + group("predator", 6)[2:]
+    liked = group("predator", 3, seen(role), _PUSH) + group("predator", 6)[3:]
     assert asked(liked)[f"liking {claim} in some worlds"].verdict == "holds"
 
 
@@ -102,14 +102,14 @@ def test_drift_alone_is_neither_fear_nor_liking() -> None:
 
 
 def test_order_follows_what_is_planted() -> None:
-    calm, scared = group("predator-small-mouth", 5), group("predator-large-mouth", 5, seen("hunter"), -_PUSH)
+    calm, scared = group("predator-small-mouth", 6), group("predator-large-mouth", 6, seen("hunter"), -_PUSH)
     name = "larger mouths, stronger fear"
     assert asked([*calm, *scared])[name].verdict == "holds"
-    assert asked([*calm, *group("predator-large-mouth", 5)])[name].verdict == "undecided"
-    scared, calm = group("predator-small-mouth", 5, seen("hunter"), -_PUSH), group("predator-large-mouth", 5)
+    assert asked([*calm, *group("predator-large-mouth", 6)])[name].verdict == "undecided"
+    scared, calm = group("predator-small-mouth", 6, seen("hunter"), -_PUSH), group("predator-large-mouth", 6)
     assert asked([*calm, *scared])[name].verdict == "fails"
-    hungry = group("predator-less-food", 5, seen("own"), -_PUSH)
-    assert asked([*hungry, *group("predator", 5)])["less food, less liking of one's own kind"].verdict == "holds"
+    hungry = group("predator-less-food", 6, seen("own"), -_PUSH)
+    assert asked([*hungry, *group("predator", 6)])["less food, less liking of one's own kind"].verdict == "holds"
 
 
 def test_weak_pitfalls() -> None:
@@ -119,21 +119,21 @@ def test_weak_pitfalls() -> None:
     (rule,) = [claim for claim in SEQUEL_CLAIMS if claim.name == name]
     none = judge(replace(rule, measure=lambda _: -1.0), "c", worlds * 5)
     assert (none.verdict, none.worlds) == ("holds", 25)
-    assert asked(group("pitfall-weak", 5, "w_see_obstacle", -_PUSH))[name].verdict == "fails"
+    assert asked(group("pitfall-weak", 6, "w_see_obstacle", -_PUSH))[name].verdict == "fails"
 
 
 def test_few_short_or_lone_worlds_decide_nothing() -> None:
-    worlds = group("predator", 5, seen("hunter"), -_PUSH)
+    worlds = group("predator", 6, seen("hunter"), -_PUSH)
     name = "fear often evolves"
-    assert asked(worlds[:2])[name].reason.startswith("fewer than 3 worlds")
+    assert asked(worlds[:2])[name].reason.startswith("fewer than 6 worlds")
     short = asked([replace(world, last_step=1024) for world in worlds])[name]
     assert short.verdict == "undecided"
     assert short.reason.startswith(f"the worlds reach 1,024 of {STEPS:,} steps")
     lone = asked([replace(world, apart_step=5000) for world in worlds])[name]
     assert (lone.verdict, lone.worlds) == ("undecided", 0)
-    assert "5 left out where another species died out" in lone.reason
+    assert "6 left out where another species died out" in lone.reason
     dead = asked([replace(world, extinct_step=5000) for world in worlds])[name]
-    assert (dead.verdict, "5 extinct left out" in dead.reason) == ("undecided", True)
+    assert (dead.verdict, "6 extinct left out" in dead.reason) == ("undecided", True)
 
 
 def test_worlds_that_lost_a_species_are_counted_beside_every_claim() -> None:

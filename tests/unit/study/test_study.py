@@ -158,12 +158,12 @@ def test_survivors_are_told_from_all(worlds: list[WorldRecord]) -> None:
     fates = {row["fate"]: row["count"] for row in tables["released_fate"].rows.iter_rows(named=True)}
     assert fates["extinct"] == 1
     assert fates["extinct or heading for it"] == 1
-    headers, printed = cells(tables["released_fate"])
-    assert all(row[headers.index("95 % interval")] for row in printed), "a share of three worlds has one, however small"
+    headers, _ = cells(tables["released_fate"])
+    assert "95 % interval" not in headers, "a share of three worlds has none"
     rows = tables["released_survivors"].rows.filter(pl.col("response") == "alive")
     assert rows["worlds"].to_list() == [3, 2, 2]
     assert rows["mean"][0] == pytest.approx(rows["mean"][1] * 2 / 3)
-    assert rows["low"].is_null().to_list() == [False, True, True]  # two worlds show no interval
+    assert rows["low"].null_count() == 3, "so few worlds show no interval"
     assert "bias_w_normal" in tables["released_worlds"].rows.columns
 
 
@@ -220,7 +220,8 @@ def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
     assert [figure.name for figure in drawn] == ["acting_courses"]
     rows = {row["response"]: row for row in tables["acting"].rows.iter_rows(named=True)}
     assert rows["food_step"]["change"] == pytest.approx(0.5)
-    assert (rows["lifetime"]["change"], rows["lifetime"]["low"]) == pytest.approx((1.0, 1.0))
+    assert rows["lifetime"]["change"] == pytest.approx(1.0)
+    assert rows["lifetime"]["low"] is None, "three seeds have no interval"
     precisions = [
         condition.config("as_printed").species["agent"].learning.acting_weights for condition in acting.CONDITIONS
     ]

@@ -64,8 +64,9 @@ def test_worlds_of_all_conditions_are_put_together(worlds: list[WorldRecord]) ->
     assert distance["effect"].to_list() == pytest.approx(np.sqrt(squares))
 
 
-def test_two_worlds_of_a_condition_get_no_bounds(worlds: list[WorldRecord]) -> None:
-    rows = make({"baseline": worlds, "large": worlds[:2]})[0]["drift_condition"].rows
+def test_few_worlds_of_a_condition_get_no_bounds(worlds: list[WorldRecord]) -> None:
+    five = [*worlds, *(dataclasses.replace(world, seed=world.seed + 3) for world in worlds[:2])]
+    rows = make({"baseline": five, "large": worlds[:2]})[0]["drift_condition"].rows
     assert set(rows["test"]) == {"direction"}
     assert rows.filter(pl.col("condition") == "baseline")["low"].null_count() == 0
     assert rows.filter(pl.col("condition") == "large")["low"].null_count() == 3

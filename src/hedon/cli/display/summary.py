@@ -9,7 +9,7 @@ from rich.text import Text
 
 from hedon.cli.display.table import PrintedTable
 from hedon.report.table import NOTHING, format_number
-from hedon.statistic.interval import SHOWN_FROM
+from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.text import count
 
 _QUANTITIES = {  # key of the summary: name
@@ -111,7 +111,7 @@ def _over_worlds(summary: Mapping[str, Any], part: _Part) -> list[PrintedTable |
             reported = [_reported(source.get(key)) for source in sources.values()]
             rows.append([label, *_interval(part.means[key]), *reported])
     rows += [[f"weight {weight}", *_interval(part.means["weights"][weight])] for weight in part.shown]
-    if worlds < SHOWN_FROM:
+    if worlds < FOR_INTERVAL:
         for line in (headers, *rows):
             del line[2]
     of = f", {part.species}" if part.species else ""
@@ -170,7 +170,7 @@ def _weight(value: float | None) -> str:
 
 def _interval(interval: Mapping[str, Any]) -> tuple[str, str]:
     both = NOTHING
-    if interval["worlds"] >= SHOWN_FROM:
+    if interval["worlds"] >= FOR_INTERVAL:
         both = f"{format_number(interval['low'])} … {format_number(interval['high'])}"
     return format_number(interval["mean"]), both
 
