@@ -1,0 +1,28 @@
+"""Whatever prints a p value, an interval or a verdict has a calibration."""
+
+from typing import get_args
+
+import pytest
+
+from calibrations.registry import all_calibrations
+from hedon.report.topic import TOPICS
+from hedon.study.claim import Comparison, OverWorlds
+
+COVERED = {key for entry in all_calibrations().values() for key in entry.covers}
+WITHOUT_CHANCE = {
+    "topic:regime": "counts and classes of what was recorded",
+    "verdict:setting": "the setting of a config, the same in every world",
+}
+"""What prints no number that could be wrong by chance, and why."""
+PRINTED = [
+    *(f"topic:{name}" for name in TOPICS),
+    *(f"verdict:{name}" for name in get_args(OverWorlds)),
+    *(f"verdict:order {name}" for name in get_args(Comparison)),
+    *(f"rule:{name}" for name in ("mean", "slope", "count")),
+    *(f"tool:{name}" for name in ("contrast", "power")),
+]
+
+
+@pytest.mark.parametrize("key", PRINTED)
+def test_it_has_a_calibration(key):
+    assert (key in COVERED) != (key in WITHOUT_CHANCE)
