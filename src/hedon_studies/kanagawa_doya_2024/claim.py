@@ -35,7 +35,10 @@ from hedon_studies.kanagawa_doya_2024.paper import (
 
 SOURCE = "Kanagawa & Doya (2024); docs/model.md, section 14"
 SAME_FACTOR = 1.5
-"""Lifetimes, rates of food and distances from a start within this factor count as the same."""
+"""Rates of food and distances from a start within this factor count as the same: half of the food does not."""
+SAME_LIFETIME = 1.1
+"""Lifetimes within this factor count as the same. An agent that never eats lives 5,095 steps, 0.81 of what the paper
+reports for the baseline and 0.89 of what it reports for the large arena: a rule with a wider factor could not fail."""
 MOST = 0.5
 """More than this share is most."""
 SOME = (0.05, 0.95)
@@ -146,13 +149,13 @@ def _weight_claims() -> Iterator[Claim]:
 
 def _table_claims() -> Iterator[Claim]:
     for preset, figures in PAPER.items():
-        for name, value, measure, unit in (
-            ("mean lifetime", figures.mean_lifetime, lifetime_of_dead, "step"),
-            ("food per step", figures.food_per_step, _food, "1/step"),
+        for name, value, measure, unit, factor in (
+            ("mean lifetime", figures.mean_lifetime, lifetime_of_dead, "step", SAME_LIFETIME),
+            ("food per step", figures.food_per_step, _food, "1/step", SAME_FACTOR),
         ):
             if value is not None:
-                text = f"{name} [{unit}], within a factor of {SAME_FACTOR:g}"
-                low, high = value / SAME_FACTOR, value * SAME_FACTOR
+                text = f"{name} [{unit}], within a factor of {factor:g}"
+                low, high = value / factor, value * factor
                 yield _claim(name, _about(preset), text, measure, "ratio", f"{value:g}", low, high)
         for name, bounds, measure in (
             ("population", figures.population, _alive),

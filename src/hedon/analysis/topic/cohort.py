@@ -16,8 +16,8 @@ _WINDOWS = 10  # of a run, at most
 def window_count(worlds: Sequence[WorldRecord]) -> int:
     """Into how many windows by birth the runs of one condition are cut: ten, or fewer for small records.
 
-    Worlds that died out do not count while others live on: one early death would leave a few long windows, none of which
-    is complete in a living world.
+    Worlds that died out do not count while others live on: one early death would leave a few long windows, none of
+    which is complete in a living world.
     """
     living = [world for world in worlds if world.extinct_step is None]
     smallest = min((world.born.height for world in living or worlds), default=0)
