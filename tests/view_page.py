@@ -1,19 +1,21 @@
 """A recorded run, servers and a browser for the tests of the viewer."""
 
+import atexit
 import http.server
+import shutil
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
-
-from project_files import ROOT
 
 from hedon import load_config
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.run import run
+from hedon.view.export import export
 from hedon.view.index import RunIndex
 from hedon.view.live import live_world
 from hedon.view.server import Server
@@ -70,8 +72,20 @@ def site_server(site: Path) -> http.server.ThreadingHTTPServer:
 
 
 def demo_server() -> http.server.ThreadingHTTPServer:
-    """The demo site of the documentation."""
-    return site_server(ROOT / "docs" / "live")
+    """A site of a long run with sparse frames, as `hedon view RUN --export` writes it; made once for each process."""
+    return site_server(_demo_site())
+
+
+@cache
+def _demo_site() -> Path:
+    folder = Path(tempfile.mkdtemp(prefix="hedon-demo-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    small = load_config("baseline", overrides=["population.capacity=80", "food.normal.capacity=50"])
+    run(RunPlan(small, (1,), 53_248, folder / "run", 1, 1024))
+    index = RunIndex(folder / "run")
+    data = {"page": {"run": True, "worlds": []}, "run": index.describe()}
+    export(folder / "site", data, index.files())
+    return folder / "site"
 
 
 class Watched:

@@ -5,6 +5,7 @@ from typing import get_args
 import pytest
 
 from calibrations.registry import all_calibrations
+from hedon.cli.assay import app
 from hedon.report.topic import TOPICS
 from hedon.study.claim import Comparison, OverWorlds
 
@@ -20,6 +21,7 @@ PRINTED = [
     *(f"verdict:order {name}" for name in get_args(Comparison)),
     *(f"rule:{name}" for name in ("mean", "slope", "count")),
     *(f"tool:{name}" for name in ("contrast", "power")),
+    *(f"assay:{command.callback.__name__}" for command in app.registered_commands if command.callback),
 ]
 
 

@@ -145,15 +145,15 @@ def test_an_unknown_kernel_is_named(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_ctrl_c_ends_after_the_window_and_keeps_everything(tmp_path):
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_ends_after_the_window_and_keeps_everything(tmp_path, name):
     folder = tmp_path / "out"
-    command = ["hedon", "run", "baseline", "--steps", "10000000", "--out", str(folder), *QUICK]
+    command = ["hedon", "run", "baseline", "--steps", "10000000", "--out", str(folder), *QUICK, "--checkpoint", "0"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    wait_for(folder / "manifest.json")
-    time.sleep(2.0)
-    process.send_signal(signal.SIGINT)
-    printed, errors = process.communicate(timeout=60)
-    assert process.returncode == 0, errors
+    wait_for(folder / "population" / "part-000000.parquet")
+    process.send_signal(getattr(signal, name))
+    printed, errors = process.communicate(timeout=120)
+    assert process.returncode == 128 + getattr(signal, name), errors
     assert "Interrupted after step" in printed
     assert f"hedon resume {folder}" in printed
     assert "Traceback" not in errors
@@ -165,6 +165,25 @@ def test_ctrl_c_ends_after_the_window_and_keeps_everything(tmp_path):
     population = hedon.open_run(folder).population()
     assert population["step"].max() == done
     assert (folder / "figures" / "population.png").exists()
+
+
+def test_nohup_keeps_a_run_alive(tmp_path):
+    folder = tmp_path / "out"
+    command = ["nohup", "hedon", "run", "baseline", "--steps", "2048", "--out", str(folder), "--no-report"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    wait_for(folder / "manifest.json")
+    process.send_signal(signal.SIGHUP)
+    process.communicate(timeout=120)
+    assert process.returncode == 0
+    assert json.loads((folder / "manifest.json").read_text())["status"] == "finished"
+
+
+def test_names_are_printed_as_they_are(tmp_path):
+    for name in ("m[/b]", "h[lr=0.1]", "w:dog:1", "[bold]x"):
+        answer = answer_of("run", "baseline", "--steps", "64", "--out", tmp_path / name, "--no-report")
+        assert answer.returncode == 0, answer.stderr
+        assert f"/{name}" in answer.stdout
+        assert f"/{name}" in answer_of("report", tmp_path / name).stdout
 
 
 def test_results_can_be_read_while_the_run_goes_on(tmp_path):

@@ -11,12 +11,20 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
-from scipy.integrate import trapezoid
 
 from hedon.analysis.descent.genealogy import depth, founder, genealogy, living_at, shares_of_descent
 from hedon.analysis.world.record import WorldRecord
 from hedon.assay.landscape import AssayError
-from hedon.assay.resample import PERMUTATIONS, Estimate, Floats, bounded, chance, world_draws, world_interval
+from hedon.assay.resample import (
+    PERMUTATIONS,
+    Estimate,
+    Floats,
+    chance,
+    diffusion_strength,
+    share_estimate,
+    world_draws,
+    world_interval,
+)
 from hedon.assay.sample import Sample
 from hedon.record.founder import Founders
 
@@ -58,8 +66,14 @@ class Lines:
     @property
     def selection(self) -> float:
         """The coefficient of this world by itself; NaN where the share never varied."""
-        variation = float(trapezoid(self.share * (1 - self.share), self.generation))
+        variation = float(self.variation.sum())
         return float(self.share[-1] - self.share[0]) / variation if variation > 0 else float("nan")
+
+    @property
+    def variation(self) -> Floats:
+        """The integral of p(1 − p) over the generations of each interval, shape (times − 1,)."""
+        spread = self.share * (1 - self.share)
+        return (spread[1:] + spread[:-1]) / 2 * np.diff(self.generation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,17 +212,14 @@ def estimate(groups: tuple[str, str], lines: Sequence[Lines], steps: int) -> Con
     """
     rng = np.random.default_rng(_SEED)
     worlds = len(lines)
-    change = np.array([each.share[-1] - each.share[0] for each in lines])
-    variation = np.array([trapezoid(each.share * (1 - each.share), each.generation) for each in lines])
-    draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, rng)])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        strength = (draws @ change) / (draws @ variation)
+    change = np.concatenate([np.diff(each.share) for each in lines])
+    variation = np.concatenate([each.variation for each in lines])
     ends = np.array([each.share[-1] for each in lines])
     return Contest(
         groups=groups,
         lines=tuple(lines),
-        selection=bounded(strength[0], strength[1:], worlds),
-        share=bounded(ends.mean(), (draws[1:] @ ends) / worlds, worlds),
+        selection=diffusion_strength(change, variation, worlds),
+        share=share_estimate(ends),
         start=float(np.mean([each.share[0] for each in lines])),
         p=_exchange(lines, rng),
         fixed=int((ends == 1).sum()),

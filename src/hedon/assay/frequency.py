@@ -8,8 +8,8 @@ maximum-likelihood estimate of that diffusion solves
     Σ pΔp = a ΣpV + b Σp²V,   V = p(1 − p)Δg
 
 over the intervals of all worlds, with p at the beginning of each: so shares may move as far as they like within a
-world. Without b it is the coefficient of `contest`. Intervals come from a bootstrap over seeds: worlds of one seed with
-several shares begin with the same places, so they are drawn together.
+world. Without b it is the coefficient of `contest`, with its interval. That of the line comes from a bootstrap over
+seeds: worlds of one seed with several shares begin with the same places, so they are drawn together.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,7 +18,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from hedon.assay.contest import Lines
-from hedon.assay.resample import Estimate, Floats, bounded, world_draws, world_interval
+from hedon.assay.resample import (
+    Estimate,
+    Floats,
+    bounded,
+    diffusion_strength,
+    share_estimate,
+    world_draws,
+    world_interval,
+)
 
 COEXIST, EXCLUDE, NONE, OPEN = "coexist", "exclude", "none", "open"
 VERDICTS = {
@@ -95,7 +103,7 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     for i, start in enumerate(starts):
         for lines in worlds[start]:
             sums[i, seeds.index(lines.seed)] += _sums(lines)
-    found = tuple(_at_share(start, worlds[start], sums[i], draws) for i, start in enumerate(starts))
+    found = tuple(_at_share(start, worlds[start], sums[i]) for i, start in enumerate(starts))
     whole = draws @ sums.sum(axis=0)
     change, weighted, variation, first, second = whole.T
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -122,24 +130,28 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
 
 def _sums(lines: Lines) -> Floats:
     """Sums over the intervals of one world: Δp, pΔp, V, pV and p²V."""
-    share, change = lines.share[:-1], np.diff(lines.share)
-    variation = share * (1.0 - share) * np.diff(lines.generation)
+    share, change, variation = lines.share[:-1], np.diff(lines.share), _variation(lines)
     parts = (change, share * change, variation, share * variation, share**2 * variation)
     return np.array([part.sum() for part in parts])
 
 
-def _at_share(start: float, worlds: Sequence[Lines], sums: Floats, draws: Floats) -> AtShare:
+def _variation(lines: Lines) -> Floats:
+    """V = p(1 − p)Δg of each interval, with p at its beginning."""
+    return lines.share[:-1] * (1.0 - lines.share[:-1]) * np.diff(lines.generation)
+
+
+def _at_share(start: float, worlds: Sequence[Lines], sums: Floats) -> AtShare:
     """What worlds of one share tell; `sums` are those of each seed."""
-    change, _, variation, first, _ = (draws @ sums).T
+    _, _, variation, first, _ = sums.sum(axis=0)
     ends = np.array([lines.share[-1] for lines in worlds])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        strength, mean = change / variation, first[0] / variation[0]
-    again = world_draws(len(ends), np.random.default_rng(_SEED)) @ ends / len(ends)
+    mean = first / variation if variation > 0 else np.nan
+    parts = [(np.diff(lines.share), lines.variation) for lines in worlds]
+    change, varied = (np.concatenate(part) for part in zip(*parts, strict=True))
     return AtShare(
         start=start,
         share=float(mean),
-        selection=bounded(strength[0], strength[1:], draws.shape[1]),
-        end=bounded(ends.mean(), again, len(ends)),
+        selection=diffusion_strength(change, varied, len(worlds)),
+        end=share_estimate(ends),
         worlds=len(worlds),
         extinct=sum(lines.ended for lines in worlds),
         fixed=int((ends == 1).sum()),

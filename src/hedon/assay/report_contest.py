@@ -48,8 +48,9 @@ def contest_tables(contest: Contest) -> list[ResultTable]:
         {"quantity": "worlds", "value": len(contest.lines)},
     ]
     note = (
-        f"Of {first} against {second}: above 0, {first} grows faster. Intervals: bootstrap over worlds. p: the chance "
-        "of so large a change of the share if both are alike; the founders of a world exchange their groups."
+        f"Of {first} against {second}: above 0, {first} grows faster. Its interval comes from how the share wanders "
+        "within worlds. p: the chance of so large a change of the share if both are alike; the founders of a world "
+        "exchange their groups."
     )
     step, ratio, bounds = contest.course()
     course = [

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from hedon.statistic.interval import mean_interval
+from hedon.statistic.minimum import FOR_INTERVAL
+
 REPLICATES = 1000
 PERMUTATIONS = 999
-FEWEST_WORLDS = 3
-"""Worlds below which no interval is given."""
-
 _FAILED = 0.05  # of the replicates that may have no value
 
 Floats = NDArray[np.float64]
@@ -43,7 +43,7 @@ def world_interval(values: NDArray[np.float64], worlds: int) -> Floats:
     Returns:
         Lower and upper bound, (2, …).
     """
-    if worlds < FEWEST_WORLDS:
+    if worlds < FOR_INTERVAL:
         return np.full((2, *values.shape[1:]), np.nan)
     reach = math.sqrt(worlds / (worlds - 1)) * float(stats.t.ppf(0.975, worlds - 1))
     tail = float(stats.norm.cdf(-reach))
@@ -71,6 +71,43 @@ def bounded(value: float, replicates: NDArray[np.float64] | Sequence[float], wor
         worlds: how many were drawn.
     """
     return Estimate(float(value), *map(float, world_interval(np.asarray(replicates), worlds)))
+
+
+def diffusion_strength(change: Floats, variation: Floats, worlds: int) -> Estimate:
+    """The strength of selection on a share, with an interval from how much the share wanders within worlds.
+
+    The changes Δp less s·V are noise of mean 0 with a variance of its own at each moment, so that the sum of their
+    squares estimates the variance of ΣΔp. A bootstrap over worlds misses the truth in a quarter of cases with ten
+    worlds and in half with three, since worlds that have lost the group say almost nothing.
+
+    Args:
+        change: Δp of each interval of each world, (intervals,).
+        variation: V = p(1 − p)Δg of each, (intervals,).
+        worlds: how many these are.
+
+    Returns:
+        s = ΣΔp / ΣV per generation, and s ± 1.96 √Σ(Δp − sV)² / ΣV; NaN if the share never varied.
+    """
+    total = float(variation.sum())
+    if total <= 0:
+        return Estimate(math.nan, math.nan, math.nan)
+    strength = float(change.sum()) / total
+    if worlds < FOR_INTERVAL:
+        return Estimate(strength, math.nan, math.nan)
+    reach = float(stats.norm.ppf(0.975)) * math.sqrt(float(((change - strength * variation) ** 2).sum())) / total
+    return Estimate(strength, strength - reach, strength + reach)
+
+
+def share_estimate(shares: Floats) -> Estimate:
+    """The mean share over worlds with Student's interval, within 0 and 1.
+
+    Args:
+        shares: one per world, (worlds,).
+    """
+    found = mean_interval(shares.tolist())
+    if found.mean is None or found.low is None or found.high is None:
+        return Estimate(math.nan if found.mean is None else found.mean, math.nan, math.nan)
+    return Estimate(found.mean, max(found.low, 0.0), min(found.high, 1.0))
 
 
 def within(values: Floats, world: Ints) -> Floats:

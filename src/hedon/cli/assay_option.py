@@ -99,8 +99,10 @@ class AssayOptions:
                 f"{steps:,} world-steps",
                 soft_wrap=True,
             )
+        from hedon.experiment.interrupt import interrupted_code
+
         if not all_finished(jobs, make_runs(jobs, console, self.threads), console):
-            return
+            raise typer.Exit(interrupted_code())
         answer = ask(read_samples(wanted, folder))
         files = write_answer(folder, answer)
         console.print(analysis_group({table.name: table for table in answer.tables}))

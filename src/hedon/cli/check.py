@@ -38,14 +38,13 @@ def check(
             continue
         findings, notes = list(verdict.findings), list(verdict.notes)
         if replay and not findings:
-            from rich.console import Console
-
+            from hedon.cli.console import make_console
             from hedon.cli.display.run import RunDisplay
             from hedon.experiment.replay import replay_run
             from hedon.record.reader import open_run
 
             opened = open_run(run)
-            with RunDisplay(Console(stderr=True, highlight=False), opened.columns, opened.manifest.seeds) as display:
+            with RunDisplay(make_console(stderr=True), opened.columns, opened.manifest.seeds) as display:
                 found, note = replay_run(run, display=display)
             findings += found
             notes.append(note)

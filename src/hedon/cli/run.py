@@ -116,6 +116,7 @@ def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun
         report: Whether the run ends with a report.
     """
     from hedon.cli.display.run import RunDisplay, duration
+    from hedon.experiment.interrupt import interrupted_code
     from hedon.record.schema import columns_of
 
     config, console = plan.config, make_console()
@@ -140,6 +141,8 @@ def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun
     console.print(f"Write the report{' again' if report else ''} with: hedon report {folder}", soft_wrap=True)
     unseen = "" if plan.frames else " (plots only: a run with --frames 64 also shows its agents)"
     console.print(f"Watch it in the browser with: hedon view {folder}{unseen}", soft_wrap=True)
+    if manifest.status == "interrupted":
+        raise typer.Exit(interrupted_code())
 
 
 def require_backend(backend: str | None) -> None:

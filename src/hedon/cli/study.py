@@ -248,10 +248,13 @@ def _make(
         soft_wrap=True,
     )
     _require_folders(*([out] if part is None else []), *([runs] if jobs else []))
+    from hedon.experiment.interrupt import interrupted_code
+
     ends = make_runs(jobs, console, threads, ray)
     if part is None:
         _report(studies, request, runs, out, console)
-    all_finished(jobs, ends, console)
+    if not all_finished(jobs, ends, console):
+        raise typer.Exit(interrupted_code())
 
 
 def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Path, console: "Console") -> None:

@@ -243,6 +243,7 @@ def _run_and_report(
 ) -> None:
     """Runs what is open, also what is added meanwhile, shows it, and prints the table. JobError: a batch failed."""
     from hedon.cli.display.analysis import analysis_group
+    from hedon.experiment.interrupt import interrupted_code
     from hedon.jobs.part import parse_part
     from hedon.sweep.collect import collect as write_table
     from hedon.sweep.plan import load_plan
@@ -256,7 +257,7 @@ def _run_and_report(
             console.print(f"  {count(len(jobs), 'batch')} to make in {store.location}", soft_wrap=True)
             ends = make_runs(jobs, console, workers, ray) if jobs else {}
         if not all_finished(jobs, ends, console, again):
-            return
+            raise typer.Exit(interrupted_code())
         before, made = made, load_plan(store)
         if made == before:
             break

@@ -43,4 +43,4 @@ def video(
     console = make_console()
     with FilmDisplay(console, rate) as display:
         make_video(footage, shown, out, width, rate, display.update)
-    console.print(f"wrote {out}: {shown.pictures:,} pictures, {out.stat().st_size / 1e6:.1f} MB", markup=False)
+    console.print(f"wrote {out}: {shown.pictures:,} pictures, {out.stat().st_size / 1e6:.1f} MB")

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 from rich.console import Console
 
+from hedon.cli.console import make_console
 from hedon.cli.display.run import duration
 from hedon.cli.display.screen import Screen
 from hedon.text import printable
@@ -23,7 +24,7 @@ class StepDisplay(Screen):
     """
 
     def __init__(self, what: str, console: Console | None = None, clock: Callable[[], float] = time.monotonic) -> None:
-        super().__init__(console or Console(stderr=True, highlight=False), clock=clock)
+        super().__init__(console or make_console(stderr=True), clock=clock)
         self._what, self._begun = what, clock()
 
     def __call__(self, done: int, of: int, step: str) -> None:

@@ -1,0 +1,152 @@
+"""Assays: contests of two groups that do not differ, and slopes of genes that do nothing."""
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+
+from calibrations.calibration import Calibration
+from hedon.assay.contest import Contest, Lines, estimate
+from hedon.assay.frequency import estimate_frequency
+from hedon.assay.gene_effect import gene_effects
+from hedon.assay.resample import Estimate, relative
+from hedon.assay.stability import Stability, WeightCourse, judge
+from hedon.statistic.interval import Interval
+
+LEVEL = 0.05
+MOMENTS, GENERATIONS = 41, 8.0
+
+
+def _lines(rng: np.random.Generator, seed: int, start: float, living: int = 100) -> Lines:
+    """Two groups that do not differ: the share drifts as in a population of constant size."""
+    share, steps = [start], MOMENTS - 1
+    for _ in range(steps):
+        moved = rng.binomial(round(living * steps / GENERATIONS), share[-1])
+        share.append(moved / round(living * steps / GENERATIONS))
+    p = np.array(share)
+    founders = np.arange(50) < round(50 * start)
+    return Lines(
+        seed=seed,
+        step=np.arange(MOMENTS),
+        count=living * np.stack([p, 1 - p], axis=1),
+        generation=np.linspace(0, GENERATIONS, MOMENTS),
+        first=founders,
+        descendants=rng.exponential(1.0, 50),
+        ended=False,
+    )
+
+
+def _contest(rng: np.random.Generator, start: float) -> Contest:
+    worlds = int(rng.integers(5, 13))
+    return estimate(("a", "b"), [_lines(rng, seed, start) for seed in range(worlds)], 1000)
+
+
+def _missed(found: Estimate, truth: float) -> bool | None:
+    return None if np.isnan(found.low) else not found.low <= truth <= found.high
+
+
+def _strength(start: float) -> Callable[[np.random.Generator], bool | None]:
+    return lambda rng: _missed(_contest(rng, start).selection, 0.0)
+
+
+def _end(rng: np.random.Generator) -> bool | None:
+    return _missed(_contest(rng, 0.5).share, 0.5)
+
+
+def _exchange(rng: np.random.Generator) -> bool:
+    return _contest(rng, 0.5).p <= LEVEL
+
+
+def _frequency(part: Literal["least", "slope"]) -> Callable[[np.random.Generator], bool | None]:
+    def draw(rng: np.random.Generator) -> bool | None:
+        seeds = int(rng.integers(5, 13))
+        worlds = {start: [_lines(rng, seed, start) for seed in range(seeds)] for start in (0.1, 0.5, 0.9)}
+        found = estimate_frequency(("a", "b"), worlds)
+        return _missed(found.shares[0].selection if part == "least" else found.slope, 0.0)
+
+    return draw
+
+
+def _landscape(rng: np.random.Generator) -> bool:
+    """Whether the interval of a slope leaves out 0: families differ by luck, genes do nothing."""
+    worlds = int(rng.integers(5, 13))
+    world = np.repeat(np.arange(worlds), 60)
+    children = rng.poisson(rng.gamma(0.5, 2.0, len(world))).astype(np.float64)
+    genes = rng.uniform(-2, 2, (len(world), 1))
+    (found,) = gene_effects(["w"], genes, relative(children, world), world, rng)
+    return not found.slope_low <= 0 <= found.slope_high
+
+
+def _landscape_p(rng: np.random.Generator) -> bool:
+    world = np.repeat(np.arange(int(rng.integers(3, 13))), 60)
+    children = rng.poisson(rng.gamma(0.5, 2.0, len(world))).astype(np.float64)
+    (found,) = gene_effects(["w"], rng.uniform(-2, 2, (len(world), 1)), relative(children, world), world, rng)
+    return found.slope_p <= LEVEL
+
+
+def _stability(rng: np.random.Generator) -> bool:
+    """Whether any of two genes from two starts is said to leave, or to be held, though both drift."""
+    starts = []
+    for name in ("one", "two"):
+        courses = {
+            gene: WeightCourse(
+                gene, 0.0, np.zeros(1), np.zeros((1, 1)), np.zeros((2, 1)), Interval(0, None, None, 5), 0.0, *p
+            )
+            for gene, p in zip(("w_food", "w_action"), rng.random((2, 2)).tolist(), strict=True)
+        }
+        starts.append(Stability(name, dict.fromkeys(courses, 0.0), 5, 0, 10.0, courses, (1, 2, 3, 4, 5)))
+    return any(course.verdict != "as drift" for start in judge(starts) for course in start.courses.values())
+
+
+_ALIKE = "5 to 12 worlds of 100 agents over 8 generations; the groups do not differ; start at {}"
+CALIBRATIONS = [
+    Calibration("compete, s", ("assay:compete",), _ALIKE.format(0.5), "missed", LEVEL, _strength(0.5)),
+    Calibration(
+        "invade, s",
+        ("assay:invade", "assay:knockout"),
+        _ALIKE.format(0.1),
+        "missed",
+        LEVEL,
+        _strength(0.1),
+        tolerance=0.03,
+    ),
+    Calibration("compete, share at the end", ("assay:compete",), _ALIKE.format(0.5), "missed", LEVEL, _end),
+    Calibration("compete, p by founders", ("assay:compete",), _ALIKE.format(0.5), "false alarms", LEVEL, _exchange),
+    Calibration(
+        "frequency, s at the least share",
+        ("assay:frequency",),
+        _ALIKE.format("0.1, 0.5, 0.9"),
+        "missed",
+        LEVEL,
+        _frequency("least"),
+        tolerance=0.03,
+    ),
+    Calibration(
+        "frequency, slope", ("assay:frequency",), _ALIKE.format("0.1, 0.5, 0.9"), "missed", LEVEL, _frequency("slope")
+    ),
+    Calibration(
+        "landscape, interval of a slope",
+        ("assay:landscape",),
+        "5 to 12 worlds of 60 founders; families differ by luck",
+        "missed",
+        LEVEL,
+        _landscape,
+        tolerance=0.04,
+    ),
+    Calibration(
+        "landscape, p of a slope",
+        ("assay:landscape",),
+        "3 to 12 worlds of 60 founders; families differ by luck",
+        "false alarms",
+        LEVEL,
+        _landscape_p,
+    ),
+    Calibration(
+        "stability, any verdict",
+        ("assay:stability",),
+        "two genes from two starts that drift",
+        "false alarms",
+        LEVEL,
+        _stability,
+    ),
+]
