@@ -149,3 +149,9 @@ def test_a_live_world_with_a_rule_in_python_is_refused(tmp_path):
 
 def test_the_command_wants_a_run_or_a_live_world():
     assert "--live" in str(CliRunner().invoke(app, ["view"]).exception)
+
+
+def test_an_address_that_is_none_is_answered(server):
+    with socket.create_connection(("127.0.0.1", server.server_port)) as connection:
+        connection.sendall(f"GET http://[bad/ HTTP/1.0\r\nHost: 127.0.0.1:{server.server_port}\r\n\r\n".encode())
+        assert b" 400 " in connection.recv(100)

@@ -1,6 +1,7 @@
 """The command `hedon`."""
 
 import errno
+import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -113,8 +114,10 @@ def main(command: typer.Typer = app) -> None:
     """Runs a command line; a problem that the user can fix ends in one message and exit code 2."""
     sys.stdout, sys.stderr = guard(sys.stdout), guard(sys.stderr)
     _require_addresses()
+    os.environ["MPLBACKEND"] = "agg"  # figures go to files, whatever a user's sessions draw on
     if command is app:
         _refuse_gone(sys.argv[1:])
+        _refuse_empty(sys.argv[1:])
     try:
         try:
             command()
@@ -141,6 +144,13 @@ def _refuse_gone(words: Sequence[str]) -> None:
     for (command, option), name in GONE_OPTIONS.items():
         if words[:1] == [command] and any(word.partition("=")[0] == option for word in words):
             fail(f"there is no option {option}: it is {name} now")
+
+
+def _refuse_empty(words: Sequence[str]) -> None:
+    """Ends a command line with an option that is given nothing, as by a variable that is not set."""
+    for option, value in zip(words, [*words[1:], "-"], strict=True):
+        if option.startswith("--") and (value == "" or option.endswith("=")):
+            fail(f"{option.removesuffix('=')}: is empty")
 
 
 def _require_addresses() -> None:

@@ -163,6 +163,10 @@ def settle_stores_and_queries(tables: Table) -> Iterator[Problem]:
         kept = own.get("store")
         if not isinstance(kept, dict):
             continue
+        if "energy" in kept:
+            message = "is every species' own store: set it in the section energy, and give another name to a new one"
+            yield Problem(f"species.{name}.store.energy", message)
+            del kept["energy"]
         known = [store for store, value in kept.items() if isinstance(value, dict) and "capacity" in value]
         for store, value in kept.items():
             if isinstance(value, dict) and store not in known:

@@ -184,6 +184,11 @@ def _path_of(source: str | Path) -> Path | None:
     if isinstance(source, Path) or source.endswith(".toml") or "/" in source:
         return Path(source)
     if source not in PRESETS:
+        near = nearest(source, [path.name for path in Path().glob("*.toml")], MISTYPED)
+        if near is not None and nearest(source, PRESETS, MISTYPED) is None:
+            raise ConfigError(
+                source, [Problem("", "there is no such preset, and a file's name ends with .toml", None, near)]
+            )
         known = "there is no such preset (there are " + ", ".join(PRESETS) + "); a file's name ends with .toml"
         raise ConfigError(source, [Problem("", known, nearest=nearest(source, PRESETS))])
     return None

@@ -261,9 +261,9 @@ def open_run(path: Path | str) -> Run:
     """
     folder = Path(path)
     require_unicode(folder)
-    require_plain(folder)
     if not (folder / MANIFEST).is_file():
         raise RecordError(f"{folder} is not a run folder: it has no {MANIFEST}{_nearest(folder)}")
+    require_plain(folder)
     try:
         config_text = (folder / CONFIG).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:

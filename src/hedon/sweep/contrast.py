@@ -1,6 +1,7 @@
 """Do two conditions of a sweep differ? Worlds are the units, in pairs where their seeds are equal."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,7 +71,7 @@ def two_of(by: str, every: Iterable[Any], between: str | None) -> tuple[Any, Any
         SweepError: there are not two such values.
     """
     values = {format_value(each).strip('"'): each for each in every}
-    asked = list(values) if between is None else [part.strip() for part in between.split(",")]
+    asked = list(values) if between is None else [_as_written(part.strip(), values) for part in between.split(",")]
     if len(asked) == 2 and set(asked) <= values.keys() and asked[0] != asked[1]:
         return values[asked[0]], values[asked[1]]
     there = ", ".join(list(values)[:MOST_TOLD]) + (
@@ -80,6 +81,15 @@ def two_of(by: str, every: Iterable[Any], between: str | None) -> tuple[Any, Any
         raise SweepError(f"--by {by}: has one value, {there}: a comparison needs two")
     said = f"--by {by}" if between is None else f"--between {between}"
     raise SweepError(f"{said}: name two of the values of {by} with --between A,B: there are {there}")
+
+
+def _as_written(asked: str, values: Mapping[str, Any]) -> str:
+    """The value as the sweep writes it: 30 and 3e1 name 30.0."""
+    for written, value in values.items():
+        with suppress(ValueError):
+            if isinstance(value, int | float) and not isinstance(value, bool) and float(asked) == value:
+                return written
+    return asked
 
 
 def comparable(

@@ -90,7 +90,11 @@ class _Handler(BaseHTTPRequestHandler):
         if self.headers.get("Host") not in server.hosts:
             return self._answer(HTTPStatus.FORBIDDEN, "text/plain", b"wrong host\n")
         try:
-            found = server.find(urlsplit(self.path).path)
+            path = urlsplit(self.path).path
+        except ValueError:
+            return self._answer(HTTPStatus.BAD_REQUEST, "text/plain", b"no such address\n")
+        try:
+            found = server.find(path)
         except (HedonError, OSError) as error:
             return self._answer(HTTPStatus.CONFLICT, "text/plain; charset=utf-8", f"{error}\n".encode())
         if found is None:

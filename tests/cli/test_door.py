@@ -1,0 +1,52 @@
+"""What users mistype, leave empty or have set elsewhere ends in one message that says what to do."""
+
+import os
+import subprocess
+
+import polars as pl
+import pytest
+from command import hedon
+
+from hedon.sweep.contrast import two_of
+from hedon.sweep.error import SweepError
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("run", "clumped.tml"), "did you mean clumped.toml?"),
+        (("run", "baselin"), "did you mean baseline?"),
+        (("run", "energy.toml"), "store.energy: is every species' own store: set it in the section energy"),
+        (("run", "baseline", "--out", ""), "--out: is empty"),
+        (("run", "baseline", "--out="), "--out: is empty"),
+        (("report", "clone"), "clone is not a run folder: it has no manifest.json"),
+    ],
+)
+def test_a_mistake_is_named(tmp_path, words, message):
+    (tmp_path / "clumped.toml").write_text("")
+    (tmp_path / "energy.toml").write_text("[store.energy]\ncapacity = 5.0\n")
+    (tmp_path / "clone").mkdir()
+    (tmp_path / "clone" / "link").symlink_to(tmp_path)
+    before = sorted(tmp_path.iterdir())
+    answer = hedon(*words, cwd=tmp_path)
+    assert answer.returncode == 2
+    assert message in answer.stderr
+    assert "Traceback" not in answer.stderr
+    assert sorted(tmp_path.iterdir()) == before, "nothing is written"
+
+
+def test_what_a_session_draws_on_does_not_matter(tmp_path):
+    command = ["hedon", "run", "baseline", "--steps", "64", "--out", str(tmp_path / "run")]
+    answer = subprocess.run(
+        command, env=os.environ | {"MPLBACKEND": "nonsense"}, capture_output=True, text=True, check=False
+    )
+    assert answer.returncode == 0, answer.stderr
+    assert (tmp_path / "run" / "figures" / "world.png").exists()
+
+
+def test_values_of_a_factor_are_numbers():
+    values = pl.Series([30.0, 120.0, 300.0]).to_list()
+    assert two_of("growth", values, "30,120") == (30.0, 120.0)
+    assert two_of("growth", values, "3e1, 120.00") == (30.0, 120.0)
+    with pytest.raises(SweepError, match="there are 30"):
+        two_of("growth", values, "30,31")
