@@ -149,10 +149,14 @@ def test_an_unknown_kernel_is_named(tmp_path):
 def test_a_signal_ends_after_the_window_and_keeps_everything(tmp_path, name):
     folder = tmp_path / "out"
     command = ["hedon", "run", "baseline", "--steps", "10000000", "--out", str(folder), *QUICK, "--checkpoint", "0"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    wait_for(folder / "population" / "part-000000.parquet")
-    process.send_signal(getattr(signal, name))
-    printed, errors = process.communicate(timeout=120)
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    process = subprocess.Popen(command, **pipes, preexec_fn=heed_signals)  # the tests themselves may ignore some
+    try:
+        wait_for(folder / "population" / "part-000000.parquet", 120.0)
+        process.send_signal(getattr(signal, name))
+        printed, errors = process.communicate(timeout=120)
+    finally:
+        process.kill()
     assert process.returncode == 128 + getattr(signal, name), errors
     assert "Interrupted after step" in printed
     assert f"hedon resume {folder}" in printed
@@ -208,6 +212,12 @@ def test_extinction_is_said_and_recorded(tmp_path):
     assert world["extinct"] is True
     assert world["alive"] == 0
     assert world["deaths"] == 50
+
+
+def heed_signals():
+    """In a new process: signals do what they do by default, whatever this one ignores."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
 
 
 def wait_for(path, seconds=30.0):

@@ -126,7 +126,8 @@ def test_a_copy_of_driven_worlds_goes_on_alone(way, species, repeat):
     assert play(other, 10, 1) == play(worlds, 10, 1)
     for each in (worlds, other):
         each.reset()
-    assert worlds.simulation.seeds == other.simulation.seeds == (5, 6)
+    assert worlds.simulation.seeds == other.simulation.seeds
+    assert not {3, 4} & set(worlds.simulation.seeds)
     assert play(other, 5, 2) == play(worlds, 5, 2)
 
 

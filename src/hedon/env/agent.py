@@ -84,7 +84,7 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         """Begins a new world and a new life.
 
         Args:
-            seed: Of the world; None for the first one, and then for the one with the next number.
+            seed: Of the world; None for the first one, and then for seeds drawn from it.
             options: None are known; Gymnasium has the argument.
 
         Returns:

@@ -98,7 +98,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         """Begins again.
 
         Args:
-            seed: Of the new world; None for the first one, and then for the one with the next number.
+            seed: Of the new world; None for the first one, and then for seeds drawn from it.
             options: None are known; PettingZoo has the argument.
 
         Returns:

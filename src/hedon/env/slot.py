@@ -19,9 +19,9 @@ class SlotVecEnv(VecEnv):
 
     An episode is a life: it ends at a death (`dones`), and the next one begins at the birth of who takes the slot.
     In between, while nobody lives there, is an episode of its own that shows zeros and pays 0; its infos have
-    `alive: False`. Worlds that have come to
-    `max_steps`, or in which no agent of the species is left, begin again with the next seeds; where time ended a life,
-    its info has `TimeLimit.truncated`. The last observation of a life is in `terminal_observation`: zeros after death.
+    `alive: False`. Worlds that have come to `max_steps`, or in which no agent of the species is left, begin again with
+    seeds drawn from the first ones; if time ended a life, its info has `TimeLimit.truncated`. The last observation of a
+    life is in `terminal_observation`: zeros after death.
 
     Args:
         worlds: Of `hedon.make`, with one driven species; nobody else may step or reset them.

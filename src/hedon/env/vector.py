@@ -122,7 +122,7 @@ class VectorEnv:
             for name in names
         }
         self._form, self._fresh = form, True
-        self._next_seed = (max(simulation.seeds) + 1) % (MAX_WORLD_SEED + 1)
+        self._seeded_by(simulation.seeds)
         self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since it began
         self._eye: Any = None
         self._record: Any = None  # also of a copy: it has no records
@@ -173,7 +173,7 @@ class VectorEnv:
         return self.spaces.actions
 
     def reset(self, seed: int | Sequence[int] | None = None, options: Any = None) -> tuple[Any, dict[str, Any]]:
-        """Begins worlds again, at first with the seeds that they were made with, then with the next ones.
+        """Begins worlds again, at first with the seeds that they were made with, then with seeds drawn from these.
 
         Args:
             seed: Of the first world, whose followers have the next numbers; or a list with one for each world.
@@ -192,13 +192,12 @@ class VectorEnv:
             raise ArgumentError(f"reset: {RECORDED}")
         if seed is not None:
             seeds = world_seeds(seed, count)
-            self._next_seed = (max(seeds) + 1) % (MAX_WORLD_SEED + 1)
+            self._seeded_by(seeds)
         elif self._fresh and mask.all():
             seeds = self.simulation.seeds
         else:
-            seeds = tuple((self._next_seed + i) % (MAX_WORLD_SEED + 1) for i in range(count))
-            self._next_seed = (self._next_seed + int(mask.sum())) % (MAX_WORLD_SEED + 1)
-            seeds = tuple(seeds[i] for i in np.maximum(np.cumsum(mask) - 1, 0))
+            drawn = iter(self._draw_seeds(int(mask.sum())))
+            seeds = tuple(next(drawn) if begins else 0 for begins in mask)
         for i in np.flatnonzero(mask).tolist():
             self.simulation.engine.reset(i, seeds[i])
         self._open(mask)
@@ -206,6 +205,15 @@ class VectorEnv:
         if self.render_mode == "human":
             self.render()
         return self._told[0], self._told[4]
+
+    def _seeded_by(self, seeds: Sequence[int]) -> None:
+        """Fixes which seeds later worlds get: those of environments with neighboring seeds have nothing in common."""
+        self._next_seed = int(np.random.SeedSequence(list(map(int, seeds))).generate_state(1, np.uint64)[0])
+
+    def _draw_seeds(self, count: int) -> list[int]:
+        state, *drawn = np.random.SeedSequence(self._next_seed).generate_state(1 + count, np.uint64).tolist()
+        self._next_seed = state
+        return [seed % (MAX_WORLD_SEED + 1) for seed in drawn]
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """Advances every world by `repeat` steps with these actions.
