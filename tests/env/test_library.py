@@ -53,14 +53,14 @@ def test_gymnasium_finds_nothing_wrong_with_one_agent(config, species, options):
 
 def test_a_life_is_an_episode():
     """What the agent is paid in an episode is what its life was paid, and it ends at its death."""
-    env = AgentEnv(GUEST, "guest", seed=4)
+    env = AgentEnv(GUEST, "guest", seed=1)
     env.action_space.seed(1)
     lives, world, seeds = 0, env.simulation.worlds[0], set()
     for life in range(6):
         observation, info = env.reset()
         seeds.add(world.seed)
         assert len(seeds) == life + 1
-        assert 4 in seeds
+        assert 1 in seeds
         assert info["slot"] == 0
         np.testing.assert_array_equal(observation, world.observations("guest")[0])
         paid, died, steps = 0.0, False, 0
