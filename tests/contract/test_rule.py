@@ -237,12 +237,21 @@ def test_a_config_is_pinned_once(file):
     assert pinned(once, rules(once, [found[0].source])) == once
 
 
-def test_what_a_rule_reads_is_read_again_for_each_world(tmp_path):
-    """A rule may read other files: its text alone does not say what it pays, so nothing compiled is kept by it."""
-    pay, rule = tmp_path / "pay", tmp_path / "rule.py"
-    rule.write_text(f"PAY = float(open({str(pay)!r}).read())\n\ndef paid(agent):\n    return PAY\n")
-    for amount in ("1", "2"):
-        pay.write_text(amount)
-        simulation = make_simulation(*QUICK, f'reward.rule="{rule}:paid"')
-        simulation.run(1)
-        assert simulation.worlds[0].view("reward").max() == float(amount)
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("PAY = float(open('pay').read())", "line 1: it reads a file, which no run keeps"),
+        ("from pathlib import Path\nPAY = float(Path('pay').read_text())", "line 2: it reads a file"),
+        ("import numpy as np\nPAY = np.load('pay.npy')[0]", "line 2: it reads a file"),
+        ("from helper import PAY", "line 1: it imports helper, a file of yours"),
+        ("from numpy.random import *\nPAY = 1.0", "line 1: it imports \\* from numpy.random"),
+    ],
+)
+def test_what_no_run_keeps_is_refused(tmp_path, monkeypatch, text, message):
+    """A run keeps the text of the rule's file: what that takes from elsewhere could change unnoticed."""
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "helper.py").write_text("PAY = 1.0\n")
+    rule = tmp_path / "rule.py"
+    rule.write_text(f"{text}\n\ndef paid(agent):\n    return PAY\n")
+    with pytest.raises(RuleError, match=message):
+        make_simulation(*QUICK, f'reward.rule="{rule}:paid"')

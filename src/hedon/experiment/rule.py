@@ -8,7 +8,7 @@ gone.
 import hashlib
 import re
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import import_module
@@ -27,7 +27,7 @@ from hedon.config.problem import nearest
 from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.schema.species import RULE_USES
 from hedon.error import ArgumentError, HedonError
-from hedon.experiment.rule_text import cause, failure, refusal
+from hedon.experiment.rule_text import cause, failure, refusal, unpinned
 from hedon.record.folder import CONFIG, MANIFEST
 from hedon.record.manifest import RuleSource, load_manifest
 from hedon.text import brief
@@ -68,6 +68,7 @@ class Rule:
             RuleError: The file fails, or has no such function, or it takes more than an agent.
         """
         scope: dict[str, Any] = {"__name__": "hedon_rule", "__file__": self.source.file}
+        self._refuse_unpinned()
         try:
             exec(compile(self.source.text, self.source.file, "exec"), scope)
         except KeyboardInterrupt:
@@ -76,6 +77,8 @@ class Rule:
             raise self._error(failure(error, self.source.file)) from error
         found = scope.get(self.source.name)
         function = getattr(found, "py_func", found)  # of a function that Numba has compiled already
+        if found is not None and not isinstance(function, FunctionType):
+            raise self._error(f"{self.source.name} is {brief(repr(found), 40)}: a rule is a function, written with def")
         if not isinstance(function, FunctionType):
             known = [name for name, value in scope.items() if callable(value) and not name.startswith("_")]
             near = nearest(self.source.name, known)
@@ -90,6 +93,12 @@ class Rule:
         if refused := refusal(self.source.text, self.source.name, self.columns):
             raise self._error(refused)
         return function
+
+    def _refuse_unpinned(self) -> None:
+        """RuleError: the file takes from elsewhere what no run keeps; told before any of it is run."""
+        with suppress(SyntaxError, ValueError):  # told when the file is run
+            if found := unpinned(self.source.text):
+                raise self._error(found)
 
     def answers(self, records: NDArray[Any]) -> NDArray[np.float64]:
         """What the rule answers, computed in plain Python.

@@ -2,8 +2,10 @@
 
 import ast
 import re
+import sys
 from collections.abc import Collection, Iterator
-from typing import Any
+from importlib.util import find_spec
+from typing import Any, TypeGuard
 
 from hedon.text import brief
 
@@ -14,6 +16,8 @@ SEEDED = ("numpy.random.default_rng", "random.Random")
 CHANCE = ("random", "numpy.random", "secrets", "uuid", "os.urandom", "os.getrandom")
 CLOCKS = ("time", "datetime")
 """Modules and functions by which the same run would come out otherwise."""
+READERS = ("open", "read_text", "read_bytes", "load", "loadtxt", "genfromtxt", "fromfile", "memmap", "read_csv")
+"""Functions that read files."""
 _NOISE = re.compile(r"Failed in |During: |File \"|There (is|are) \d+ candidate|>>>|<source|$")
 _RETURNED = re.compile(r"setitem\(array\(float64, 1d, C\), int64, (.+)\)")
 
@@ -47,6 +51,56 @@ def refusal(text: str, name: str, columns: Collection[str]) -> str:
                 f"it returns, and may write agent.{MEMORY}1, agent.{MEMORY}2, …, as many as reward.memory says"
             )
     return ""
+
+
+def unpinned(text: str) -> str:
+    """What a rule takes from elsewhere that no run keeps, or under names that cannot be judged.
+
+    Args:
+        text: Of the file.
+
+    Returns:
+        The line and what is wrong there; empty if nothing is.
+
+    Raises:
+        SyntaxError, ValueError: Python cannot read the file.
+    """
+    for node in ast.walk(ast.parse(text)):
+        if _reads_file(node):
+            return f"line {node.lineno}: it reads a file, which no run keeps: put what it needs into the rule's file"
+        if isinstance(node, ast.ImportFrom) and any(each.name == "*" for each in node.names):
+            return f"line {node.lineno}: it imports * from {node.module}: import by name what it uses"
+        if not isinstance(node, ast.Import | ast.ImportFrom):
+            continue
+        modules = [each.name for each in node.names] if isinstance(node, ast.Import) else [node.module or "."]
+        for module in modules:
+            if not _is_installed(module.partition(".")[0]):
+                return (
+                    f"line {node.lineno}: it imports {module}, a file of yours: a run keeps the text of the rule's own "
+                    "file alone, so put what it needs there"
+                )
+    return ""
+
+
+def _reads_file(node: ast.AST) -> TypeGuard[ast.Call]:
+    """Whether it calls `open`, or a method by which files are read."""
+    if not isinstance(node, ast.Call):
+        return False
+    called = node.func
+    name = called.id if isinstance(called, ast.Name) else called.attr if isinstance(called, ast.Attribute) else ""
+    return name in READERS
+
+
+def _is_installed(module: str) -> bool:
+    """Whether a module is Python's own or of an installed package, rather than a file that a user edits."""
+    if not module or module in sys.stdlib_module_names or module in ("hedon", "hedon_studies"):
+        return bool(module)
+    try:
+        spec = find_spec(module)
+    except (ImportError, ValueError):
+        return True  # it is not there: Python says so when it runs the file
+    places = [*(spec.submodule_search_locations or ()), spec.origin or ""] if spec is not None else ["site-packages"]
+    return any("site-packages" in place or "dist-packages" in place for place in places)
 
 
 def failure(error: BaseException, file: str) -> str:
