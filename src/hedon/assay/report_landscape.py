@@ -108,7 +108,8 @@ def _surfaces(landscape: Landscape) -> ResultTable:
             )
         )
     edges = [name for name, found in landscape.surfaces.items() if found.smooth.at_edge]
-    note = "Fitness is relative to the mean of the own world. Intervals: bootstrap over worlds. "
+    note = "Fitness is relative to the mean of the own world. Intervals: bootstrap over worlds. The smooth surface "
+    note += "is too low at a narrow peak, and its interval misses the true height there in two of three cases. "
     note += f"By {', '.join(edges)} the surface is highest at the edge of the founders' range. " if edges else ""
     flat = ", ".join(f"{name} {found.flat_p:.3g}" for name, found in landscape.surfaces.items())
     note += f"Chance that two genes explain this much or more if they do nothing (permutation within worlds): {flat}."
