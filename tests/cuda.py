@@ -16,9 +16,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "engine" / "cuda"))
 
-from cuda_cost import count_costs, read_code  # noqa: E402
-
 import build  # noqa: E402
+from cuda_cost import count_costs, read_code  # noqa: E402
 
 BUILT = ROOT / "build" / "cuda"
 TABLE = ROOT / "tests" / "data" / "cuda_kernels.json"
