@@ -129,15 +129,11 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
 
 
 def _sums(lines: Lines) -> Floats:
-    """Sums over the intervals of one world: Δp, pΔp, V, pV and p²V."""
-    share, change, variation = lines.share[:-1], np.diff(lines.share), _variation(lines)
+    """Sums over the intervals of one world: Δp, pΔp, V, pV and p²V, with p at their beginnings and V = p(1 − p)Δg."""
+    share, change = lines.share[:-1], np.diff(lines.share)
+    variation = share * (1.0 - share) * np.diff(lines.generation)
     parts = (change, share * change, variation, share * variation, share**2 * variation)
     return np.array([part.sum() for part in parts])
-
-
-def _variation(lines: Lines) -> Floats:
-    """V = p(1 − p)Δg of each interval, with p at its beginning."""
-    return lines.share[:-1] * (1.0 - lines.share[:-1]) * np.diff(lines.generation)
 
 
 def _at_share(start: float, worlds: Sequence[Lines], sums: Floats) -> AtShare:

@@ -87,7 +87,7 @@ def measure_stability(sample: Sample) -> Stability:
     courses = [course for course in found if course is not None]
     names = worlds[0].weight_names
     step = np.arange(TIMES + 1) * steps / TIMES
-    weights = {name: _weight(name, worlds[0].gene(name).law.initial_mean, step, courses) for name in names}
+    weights = {name: weight_course(name, worlds[0].gene(name).law.initial_mean, step, courses) for name in names}
     return Stability(
         name=sample.need.name,
         point={name: worlds[0].gene(name).law.initial_mean for name in worlds[0].reward_names},
@@ -99,7 +99,18 @@ def measure_stability(sample: Sample) -> Stability:
     )
 
 
-def _weight(name: str, start: float, step: Floats, courses: Sequence[WorldCourse]) -> WeightCourse:
+def weight_course(name: str, start: float, step: Floats, courses: Sequence[WorldCourse]) -> WeightCourse:
+    """One weight over time in the worlds that have a course.
+
+    Args:
+        name: Column of the gene.
+        start: Mean of the founders' law.
+        step: Moments [step], (times,).
+        courses: One per world.
+
+    Returns:
+        The course, without verdict. Its `p` are NaN where no world can tell: no course, or a gene that cannot change.
+    """
     mean = np.full((len(courses), len(step)), np.nan)
     for row, course in zip(mean, courses, strict=True):
         row[: len(course.mean[name])] = course.mean[name]
@@ -112,11 +123,9 @@ def _weight(name: str, start: float, step: Floats, courses: Sequence[WorldCourse
         living = np.isfinite(stacked).sum(axis=0)
         null = np.where(living > 0, np.nansum(stacked, axis=0) / np.maximum(living, 1), np.nan)
     rng = np.random.default_rng(SEED)
-    scores = np.array([rank_score(course.mean[name][-1], course.neutral[name][:, -1], rng) for course in courses])
-    held = [
-        rank_score(abs(course.mean[name][-1] - start), np.abs(course.neutral[name][:, -1] - start), rng)
-        for course in courses
-    ]
+    ends = [(course.mean[name][-1], course.neutral[name][:, -1]) for course in courses]
+    scores = _known([rank_score(end, neutral, rng) for end, neutral in ends])
+    held = _known([rank_score(abs(end - start), np.abs(neutral - start), rng) for end, neutral in ends])
     return WeightCourse(
         gene=name,
         start=start,
@@ -126,8 +135,14 @@ def _weight(name: str, start: float, step: Floats, courses: Sequence[WorldCourse
         end=mean_interval([course.mean[name][-1] for course in courses]),
         score=float(scores.mean()) if len(scores) else math.nan,
         p=_two_sided(scores),
-        p_held=_below(np.array(held)),
+        p_held=_below(held),
     )
+
+
+def _known(scores: Sequence[float]) -> Floats:
+    """The scores without NaN, which a gene has that cannot change."""
+    every = np.array(scores, float)
+    return every[np.isfinite(every)]
 
 
 def judge(starts: Sequence[Stability]) -> list[Stability]:
@@ -158,8 +173,13 @@ def _corrected(courses: Sequence[WeightCourse]) -> list[WeightCourse]:
 
 
 def _two_sided(scores: Floats) -> float:
-    return float(2.0 * stats.norm.sf(abs(scores.sum()) / math.sqrt(max(len(scores), 1))))
+    return float(2.0 * stats.norm.sf(abs(_combined(scores))))
 
 
 def _below(scores: Floats) -> float:
-    return float(stats.norm.cdf(scores.sum() / math.sqrt(max(len(scores), 1))))
+    return float(stats.norm.cdf(_combined(scores)))
+
+
+def _combined(scores: Floats) -> float:
+    """The standard normal score of all worlds together (Stouffer); NaN without any."""
+    return scores.sum() / math.sqrt(len(scores)) if len(scores) else math.nan
