@@ -81,11 +81,12 @@ def alive_after_extinction(population: pl.DataFrame, end: int) -> float:
     The steps after its last agent count as empty: 0 for a world that died out before that tenth.
 
     Args:
-        population: table `population` of one world that died out.
+        population: table `population` of one world that died out, with at least one interval.
         end: steps for which it was to run [step], above 0.
     """
     require_one_species(population)
-    begin = (1 - TAIL) * end
+    first = int(population["step"][0]) - int(population["steps"][0])  # a branch may begin within the tenth
+    begin = max((1 - TAIL) * end, first)
     return int(population.filter(pl.col("step") > begin)["agent_steps"].sum()) / (end - begin)
 
 
