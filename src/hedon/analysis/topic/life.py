@@ -23,14 +23,15 @@ _AGES = 200  # points of a survival curve in the records of the analysis
 
 def lifetime(conditions: Conditions) -> list[ResultTable]:
     """Lifetimes, with those who still live counted as censored."""
-    rows, curves = [], []
-    for worlds in conditions.values():
+    rows, curves, medians = [], [], []
+    for condition, worlds in conditions.items():
         lives = [durations(world.born, world.last_step) for world in worlds]
         fitted = [survival_curve(*life) for life in lives]
         until = _common_age(worlds, fitted)
         for world, life, curve in zip(worlds, lives, fitted, strict=True):
             rows.append(labels(world) | _life_row(*life, curve, until))
             curves += [labels(world) | point for point in _points(curve)]
+        medians += _median_rows(condition, lives, fitted)
     worlds_table = make_table("lifetime_world", "Lifetimes, world by world [step]", rows, shown=False)
     quantities = {
         "mean_of_dead": "mean of the dead",
@@ -38,8 +39,7 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
         "restricted_bias": "error of the dead's restricted mean",
         "exposure_mean": "steps lived per death",
     }
-    summary = over_worlds(worlds_table.rows, (), quantities)
-    summary += [row for name, worlds in conditions.items() if (row := _median_row(name, worlds)) is not None]
+    summary = over_worlds(worlds_table.rows, (), quantities) + medians
     note = (
         "The restricted mean is that of lifetimes cut off at an age that 20 agents of each living world reached; the "
         "error is what the dead alone give instead, minus it. Steps per death are the mean life if age did not matter. "
@@ -144,21 +144,22 @@ def energy(conditions: Conditions) -> list[ResultTable]:
     return [make_table("energy", title, summary, note), worlds_table]
 
 
-def _median_row(condition: str, worlds: Sequence[WorldRecord]) -> dict[str, Any] | None:
-    """The median lifetime over worlds, or of all worlds together if some have none yet; None if that is unknown too.
+def _median_rows(
+    condition: str, lives: Sequence[tuple[np.ndarray, np.ndarray]], curves: Sequence[SurvivalCurve]
+) -> list[dict[str, Any]]:
+    """The median lifetime over worlds, or of all worlds together if some have none yet; no row if it is unknown too.
 
     A mean over the worlds that have a median would leave out those with long lives.
     """
-    lives = [durations(world.born, world.last_step) for world in worlds]
-    medians = [survival_curve(*life).quantile()[0] for life in lives]
+    medians = [curve.quantile()[0] for curve in curves]
     head = {"condition": condition}
     if all(median is not None for median in medians):
-        return head | {"quantity": "median"} | vars(mean_interval(medians))
+        return [head | {"quantity": "median"} | vars(mean_interval(medians))]
     lived, died = (np.concatenate(part) for part in zip(*lives, strict=True))
     pooled = survival_curve(lived, died).quantile()[0]
     if pooled is None:
-        return None
-    return head | {"quantity": "median of all worlds together"} | vars(Interval(pooled, None, None, len(worlds)))
+        return []
+    return [head | {"quantity": "median of all worlds together"} | vars(Interval(pooled, None, None, len(curves)))]
 
 
 def _common_age(worlds: Sequence[WorldRecord], curves: Sequence[SurvivalCurve]) -> float:
