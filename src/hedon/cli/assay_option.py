@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.make import all_finished, make_runs, tell_left_out
+from hedon.cli.make import make_runs, require_finished, tell_left_out
 from hedon.cli.run import Checkpoint, Threads
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS
@@ -99,10 +99,7 @@ class AssayOptions:
                 f"{steps:,} world-steps",
                 soft_wrap=True,
             )
-        from hedon.experiment.interrupt import interrupted_code
-
-        if not all_finished(jobs, make_runs(jobs, console, self.threads), console):
-            raise typer.Exit(interrupted_code())
+        require_finished(jobs, make_runs(jobs, console, self.threads), console)
         answer = ask(read_samples(wanted, folder))
         files = write_answer(folder, answer)
         console.print(analysis_group({table.name: table for table in answer.tables}))

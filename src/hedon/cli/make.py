@@ -51,10 +51,10 @@ def tell_left_out(faults: Sequence[str]) -> None:
         typer.echo(f"hedon: note: left out: {fault}", err=True)
 
 
-def all_finished(
+def require_finished(
     jobs: "Sequence[Job]", ends: Mapping[Path, str], console: "Console", again: str = "The same command goes on."
-) -> bool:
-    """Whether all runs are finished; says so if some were interrupted.
+) -> None:
+    """Ends the command, and says why, unless all runs are finished.
 
     Args:
         jobs: All of them.
@@ -63,8 +63,10 @@ def all_finished(
         again: How to go on.
 
     Raises:
-        JobError: One failed.
+        JobError: A run failed.
+        typer.Exit: Some were interrupted.
     """
+    from hedon.experiment.interrupt import interrupted_code
     from hedon.jobs.error import JobError
 
     failed = [str(job.folder) for job in jobs if ends.get(job.folder) == "failed"]
@@ -78,4 +80,5 @@ def all_finished(
     if failed:
         shown = ", ".join(failed[:5])
         raise JobError(f"{len(failed)} of {len(jobs)} runs failed (see the reasons above): {shown}. {again}")
-    return not left
+    if left:
+        raise typer.Exit(interrupted_code())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.make import all_finished, make_runs, tell_left_out
+from hedon.cli.make import make_runs, require_finished, tell_left_out
 from hedon.cli.run import Hours, Part, Ray, Slurm, Threads
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
@@ -248,13 +248,10 @@ def _make(
         soft_wrap=True,
     )
     _require_folders(*([out] if part is None else []), *([runs] if jobs else []))
-    from hedon.experiment.interrupt import interrupted_code
-
     ends = make_runs(jobs, console, threads, ray)
     if part is None:
         _report(studies, request, runs, out, console)
-    if not all_finished(jobs, ends, console):
-        raise typer.Exit(interrupted_code())
+    require_finished(jobs, ends, console)
 
 
 def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Path, console: "Console") -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hedon.cli.console import make_console
-from hedon.cli.make import all_finished, make_runs
+from hedon.cli.make import make_runs, require_finished
 from hedon.cli.run import Checkpoint, Hours, Part, Ray, Slurm
 from hedon.record.folder import CHECKPOINT_SECONDS
 from hedon.text import command_word, count, printable
@@ -243,7 +243,6 @@ def _run_and_report(
 ) -> None:
     """Runs what is open, also what is added meanwhile, shows it, and prints the table. JobError: a batch failed."""
     from hedon.cli.display.analysis import analysis_group
-    from hedon.experiment.interrupt import interrupted_code
     from hedon.jobs.part import parse_part
     from hedon.sweep.collect import collect as write_table
     from hedon.sweep.plan import load_plan
@@ -256,8 +255,7 @@ def _run_and_report(
         with open_tasks(made, store, checkpoint, share, on_cluster=ray is not None) as jobs:
             console.print(f"  {count(len(jobs), 'batch')} to make in {store.location}", soft_wrap=True)
             ends = make_runs(jobs, console, workers, ray) if jobs else {}
-        if not all_finished(jobs, ends, console, again):
-            raise typer.Exit(interrupted_code())
+        require_finished(jobs, ends, console, again)
         before, made = made, load_plan(store)
         if made == before:
             break
