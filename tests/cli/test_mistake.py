@@ -19,6 +19,7 @@ from hedon.sweep.error import SweepError
         (("run", "energy.toml"), "store.energy: is every species' own store: set it in the section energy"),
         (("run", "baseline", "--out", ""), "--out: is empty"),
         (("run", "baseline", "--out="), "--out: is empty"),
+        (("run", "baseline", "--set=reward.rule="), "reward.rule"),
         (("report", "clone"), "clone is not a run folder: it has no manifest.json"),
     ],
 )

@@ -148,9 +148,10 @@ def _refuse_gone(words: Sequence[str]) -> None:
 
 def _refuse_empty(words: Sequence[str]) -> None:
     """Ends a command line with an option that is given nothing, as by a variable that is not set."""
-    for option, value in zip(words, [*words[1:], "-"], strict=True):
-        if option.startswith("--") and (value == "" or option.endswith("=")):
-            fail(f"{option.removesuffix('=')}: is empty")
+    for word, following in zip(words, [*words[1:], "-"], strict=True):
+        option, equals, value = word.partition("=")
+        if option.startswith("--") and not (value if equals else following):
+            fail(f"{option}: is empty")
 
 
 def _require_addresses() -> None:
