@@ -8,6 +8,7 @@ from hedon.config.field import settings
 from hedon.config.problem import Problem, format_value, nearest
 from hedon.config.schema.evolution import OF_ALL_GENES, GeneConfig
 from hedon.config.schema.species import ONLY, PER_SPECIES
+from hedon.config.schema.store import ENERGY
 
 Table = dict[str, Any]
 EVERY = "*"
@@ -163,10 +164,10 @@ def settle_stores_and_queries(tables: Table) -> Iterator[Problem]:
         kept = own.get("store")
         if not isinstance(kept, dict):
             continue
-        if "energy" in kept:
+        if ENERGY in kept:
             message = "is every species' own store: set it in the section energy, and give another name to a new one"
-            yield Problem(f"species.{name}.store.energy", message)
-            del kept["energy"]
+            yield Problem(f"species.{name}.store.{ENERGY}", message)
+            del kept[ENERGY]
         known = [store for store, value in kept.items() if isinstance(value, dict) and "capacity" in value]
         for store, value in kept.items():
             if isinstance(value, dict) and store not in known:

@@ -16,8 +16,8 @@ SEEDED = ("numpy.random.default_rng", "random.Random")
 CHANCE = ("random", "numpy.random", "secrets", "uuid", "os.urandom", "os.getrandom")
 CLOCKS = ("time", "datetime")
 """Modules and functions by which the same run would come out otherwise."""
-READERS = ("open", "read_text", "read_bytes", "load", "loadtxt", "genfromtxt", "fromfile", "memmap", "read_csv")
-"""Functions that read files."""
+READERS = ("read_text", "read_bytes", "load", "loadtxt", "genfromtxt", "fromfile", "memmap", "read_csv")
+"""Methods and functions of modules that read files."""
 _NOISE = re.compile(r"Failed in |During: |File \"|There (is|are) \d+ candidate|>>>|<source|$")
 _RETURNED = re.compile(r"setitem\(array\(float64, 1d, C\), int64, (.+)\)")
 
@@ -87,19 +87,24 @@ def _reads_file(node: ast.AST) -> TypeGuard[ast.Call]:
     if not isinstance(node, ast.Call):
         return False
     called = node.func
-    name = called.id if isinstance(called, ast.Name) else called.attr if isinstance(called, ast.Attribute) else ""
-    return name in READERS
+    return (isinstance(called, ast.Name) and called.id == "open") or (
+        isinstance(called, ast.Attribute) and called.attr in ("open", *READERS)
+    )
 
 
 def _is_installed(module: str) -> bool:
     """Whether a module is Python's own or of an installed package, rather than a file that a user edits."""
-    if not module or module in sys.stdlib_module_names or module in ("hedon", "hedon_studies"):
-        return bool(module)
+    if not module:  # of a relative import
+        return False
+    if module in sys.stdlib_module_names or module in ("hedon", "hedon_studies"):
+        return True
     try:
         spec = find_spec(module)
     except (ImportError, ValueError):
         return True  # it is not there: Python says so when it runs the file
-    places = [*(spec.submodule_search_locations or ()), spec.origin or ""] if spec is not None else ["site-packages"]
+    if spec is None:  # it is not there either
+        return True
+    places = [*(spec.submodule_search_locations or ()), spec.origin or ""]
     return any("site-packages" in place or "dist-packages" in place for place in places)
 
 
