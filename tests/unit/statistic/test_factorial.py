@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from hedon.statistic.factorial import Cell, FactorialFit, all_effects, fit_factorial
 
@@ -30,8 +31,7 @@ def test_without_noise_effects_are_exact() -> None:
     fit = fit_factorial(design(CELLS, TRUE, 0.0, 2, np.random.default_rng(1)), 3)
     assert estimates(fit) == pytest.approx(TRUE, abs=1e-12)
     assert [effect.factors for effect in fit.effects] == all_effects(3)
-    assert (fit.left_out, fit.freedom) == ((), 8)
-    assert fit.sd == pytest.approx(0.0, abs=1e-12)
+    assert fit.left_out == ()
     assert all(effect.seeds == 2 and effect.order == 3 for effect in fit.effects)
 
 
@@ -48,7 +48,6 @@ def test_an_effect_means_what_it_says() -> None:
 
 def test_one_world_per_cell_has_no_interval() -> None:
     fit = fit_factorial(design(CELLS, TRUE, 1.0, 1, np.random.default_rng(1)), 3)
-    assert fit.freedom == 0
     assert all(np.isnan([e.low, e.high, e.p, e.p_holm]).all() for e in fit.effects)
     assert all(e.seed_low == e.seed_high == pytest.approx(e.estimate) for e in fit.effects)
 
@@ -60,8 +59,8 @@ def test_cells_count_alike_whatever_their_number_of_worlds() -> None:
     cells[CELLS[5]].pop(2)
     fit = fit_factorial(cells, 3)
     assert estimates(fit) == pytest.approx(TRUE, abs=1e-12)
-    assert fit.freedom == 8 * 2 + 6 - 1 - 8
     assert {effect.seeds for effect in fit.effects} == {1}  # seed 2 lacks a cell
+    assert all(np.isnan([e.low, e.high, e.p]).all() for e in fit.effects), "a cell of one world has no variance"
 
 
 @pytest.mark.long
@@ -78,12 +77,21 @@ def test_intervals_cover_as_often_as_promised() -> None:
     assert false_alarms / trials == pytest.approx(0.05, abs=0.045)
 
 
+def test_two_cells_are_compared_by_welch() -> None:
+    few, many = [3.0, 9.0, -4.0], [1.0, 1.5, 0.5, 1.2, 0.9]
+    fit = fit_factorial({(True,): dict(enumerate(few)), (False,): dict(enumerate(many))}, 1)
+    (effect,) = fit.effects
+    known = stats.ttest_ind(few, many, equal_var=False)
+    assert (effect.p, effect.freedom) == pytest.approx((known.pvalue, known.df))
+    assert (effect.low, effect.high) == pytest.approx(tuple(known.confidence_interval()))
+
+
 def test_few_cells_unequal_in_number_cover_too() -> None:
     rng = np.random.default_rng(4)
     true = {(0,): 2.0, (1,): -1.0, (2,): 0.5, (0, 1): 4.0, (0, 2): 0.0, (1, 2): -3.0}
     covered = total = 0
     for _ in range(300):
-        cells = design(CELLS[:-1], true, 1.0, 2, rng)
+        cells = design(CELLS[:-1], true, 1.0, 4, rng)
         cells[CELLS[1]].pop(1)
         fit = fit_factorial(cells, 3)
         covered += sum(effect.low <= true[effect.factors] <= effect.high for effect in fit.effects)
