@@ -6,7 +6,7 @@ from typing import Any
 
 import polars as pl
 
-from hedon.statistic.interval import mean_interval
+from hedon.statistic.interval import ANY, Range, mean_interval
 
 
 @dataclass(frozen=True)
@@ -47,20 +47,24 @@ def make_table(
     return ResultTable(name, title, frame, note, shown)
 
 
-def over_worlds(rows: pl.DataFrame, by: Sequence[str], quantities: Mapping[str, str]) -> list[dict[str, Any]]:
+def over_worlds(
+    rows: pl.DataFrame, by: Sequence[str], quantities: Mapping[str, str], within: Mapping[str, Range] | Range = ANY
+) -> list[dict[str, Any]]:
     """Means over worlds with Student's t intervals, a row for each group and quantity.
 
     Args:
         rows: one row per world and group; column `condition` is always grouped by.
         by: further columns that tell groups apart.
         quantities: column, and what it is called.
+        within: values that are possible, of all columns or by column.
     """
     if rows.is_empty():
         return []
     results = []
     for key, group in rows.group_by(["condition", *by], maintain_order=True):
         for column, label in quantities.items():
-            interval = mean_interval(group[column].to_list())
+            possible = within if isinstance(within, tuple) else within.get(column, ANY)
+            interval = mean_interval(group[column].to_list(), within=possible)
             head = dict(zip(["condition", *by], key, strict=True))
             results.append(head | {"quantity": label} | vars(interval))
     return results

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from hedon.statistic.interval import mean_interval
+from hedon.statistic.interval import SHARE, mean_interval
 from hedon.statistic.minimum import FOR_INTERVAL
 
 REPLICATES = 1000
@@ -104,10 +104,10 @@ def share_estimate(shares: Floats) -> Estimate:
     Args:
         shares: one per world, (worlds,).
     """
-    found = mean_interval(shares.tolist())
+    found = mean_interval(shares.tolist(), within=SHARE)
     if found.mean is None or found.low is None or found.high is None:
         return Estimate(math.nan if found.mean is None else found.mean, math.nan, math.nan)
-    return Estimate(found.mean, max(found.low, 0.0), min(found.high, 1.0))
+    return Estimate(found.mean, found.low, found.high)
 
 
 def within(values: Floats, world: Ints) -> Floats:

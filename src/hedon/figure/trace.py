@@ -25,7 +25,7 @@ def draw_traces(
     """Draws one column of a history.
 
     The thick line is the mean over the worlds that have a value at that time, so extinct worlds leave it;
-    the band is the 95 % interval of the mean, where there are at least three worlds. A cross marks where a
+    the band is the 95 % interval of the mean, where there are at least five worlds. A cross marks where a
     world died out.
 
     Args:

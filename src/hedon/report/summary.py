@@ -20,7 +20,7 @@ from hedon.analysis.world.population import alive_after_extinction, last_generat
 from hedon.analysis.world.record import born_since, gone_step
 from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.record.reader import Run
-from hedon.statistic.interval import mean_interval
+from hedon.statistic.interval import AMOUNT, mean_interval
 from hedon.study.catalogue import reported_figures
 
 _OVER_WORLDS = {
@@ -110,7 +110,7 @@ def _by_species(run: Run, agents: pl.DataFrame, population: pl.DataFrame) -> dic
 
 def _several(agents: pl.DataFrame, worlds: Sequence[Fare], means: Mapping[str, Fare]) -> dict[str, Any]:
     """What the summary of several species has in place of the means of one."""
-    alive = mean_interval(world["total"]["alive_mean"] for world in worlds)
+    alive = mean_interval((world["total"]["alive_mean"] for world in worlds), within=AMOUNT)
     return {
         "extinct_worlds": sum(world["extinct"] for world in worlds),
         "total": {"agents": agents.height, "alive": asdict(alive)},
@@ -136,7 +136,7 @@ def _means(run: Run, part: _Species, fares: Sequence[Fare]) -> dict[str, Any]:
 
 def _over_worlds(run: Run, part: _Species, fares: Sequence[Fare]) -> dict[str, Any]:
     wanted = _OVER_WORLDS | (_HUNTS if run.columns.prey else {})
-    intervals = {key: mean_interval(fare[source] for fare in fares) for key, source in wanted.items()}
+    intervals = {key: mean_interval((fare[source] for fare in fares), within=AMOUNT) for key, source in wanted.items()}
     weights = {name: mean_interval(fare["weights"][name]["mean"] for fare in fares) for name in part.kind.genes}
     return {
         **{key: asdict(interval) for key, interval in intervals.items()},

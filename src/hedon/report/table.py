@@ -21,7 +21,7 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
     """What a reader sees of a table: headers and rows.
 
     Neutral genes, which show what chance does, become one row. The bounds of an interval become one column, empty below
-    three worlds; a column `condition` with a single value is left out where there is only one condition, and so is
+    five worlds; a column `condition` with a single value is left out where there is only one condition, and so is
     every column without any value.
 
     Args:

@@ -8,7 +8,9 @@ from .factorial import FactorialFit as FactorialFit
 from .factorial import Factors as Factors
 from .factorial import all_effects as all_effects
 from .factorial import fit_factorial as fit_factorial
+from .interval import AMOUNT as AMOUNT
 from .interval import LEVEL as LEVEL
+from .interval import SHARE as SHARE
 from .interval import distance_interval as distance_interval
 from .interval import mean_interval as mean_interval
 from .interval import share_interval as share_interval

@@ -11,11 +11,11 @@ With all cells there, they count alike, however many worlds they hold. Box, Hunt
 who halve interactions; here they are not halved, so that on a log scale an interaction is a ratio of ratios.
 
 The error is that of worlds within cells, each cell with a variance of its own (Welch, 1947; degrees of freedom by
-Satterthwaite, 1946). Seeds that several cells share are not taken for blocks, which errs on the safe side. Where cells are missing, an effect is estimated by
-least squares in the largest model that determines it: all effects up to some order, those of higher order taken to be
-none. It is then the mean of what its factors do in some cells only, and is given only if no effect of other factors is
-mixed in, of whatever order: A may be estimated from two cells that differ in A alone, but never from cells with B, with
-C and with all three. What no model determines is left out.
+Satterthwaite, 1946). Seeds that several cells share are not taken for blocks, which errs on the safe side. Where cells
+are missing, an effect is estimated by least squares in the largest model that determines it: all effects up to some
+order, those of higher order taken to be none. It is then the mean of what its factors do in some cells only, and is
+given only if no effect of other factors is mixed in, of whatever order: A may be estimated from two cells that differ
+in A alone, but never from cells with B, with C and with all three. What no model determines is left out.
 """
 
 import itertools

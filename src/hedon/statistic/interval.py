@@ -11,6 +11,12 @@ from scipy import stats
 from hedon.statistic.minimum import FOR_INTERVAL
 
 LEVEL = 0.95
+Range = tuple[float, float]
+"""Least and greatest possible value."""
+ANY: Range = (-math.inf, math.inf)
+AMOUNT: Range = (0.0, math.inf)
+"""Of counts, rates, energies and lifetimes."""
+SHARE: Range = (0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -29,7 +35,7 @@ class Interval:
     worlds: int
 
 
-def mean_interval(values: Iterable[float | None], level: float = LEVEL) -> Interval:
+def mean_interval(values: Iterable[float | None], level: float = LEVEL, within: Range = ANY) -> Interval:
     """Mean and Student's t interval over independent worlds.
 
     Worlds are the unit: agents of one world are relatives, so an interval over agents would be far too narrow.
@@ -37,6 +43,8 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL) -> Inter
     Args:
         values: one per world; None and NaN are left out.
         level: probability with which such an interval covers the true mean, if worlds are normally distributed.
+        within: what values are possible. The interval is cut there, which leaves its level as it is, since no true
+            mean lies beyond.
     """
     known = np.array([value for value in values if value is not None and math.isfinite(value)], np.float64)
     if known.size == 0:
@@ -45,7 +53,7 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL) -> Inter
     if known.size < FOR_INTERVAL:
         return Interval(mean, None, None, known.size)
     half = float(stats.t.ppf(0.5 + level / 2, known.size - 1) * known.std(ddof=1) / math.sqrt(known.size))
-    return Interval(mean, mean - half, mean + half, known.size)
+    return Interval(mean, max(mean - half, within[0]), min(mean + half, within[1]), known.size)
 
 
 def mean_bounds(values: Iterable[float | None], level: float = LEVEL) -> tuple[float, float, float]:

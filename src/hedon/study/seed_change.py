@@ -40,7 +40,7 @@ def world_rows(
 
 
 def shown_interval(values: Sequence[float | None], response: Response | None = None) -> Interval:
-    """Mean and interval over worlds, without bounds below three worlds.
+    """Mean and interval over worlds, without bounds below five worlds.
 
     Args:
         values: one per world; None is left out.

@@ -8,7 +8,7 @@ from itertools import pairwise
 import polars as pl
 
 from hedon.config.problem import nearest
-from hedon.statistic.interval import Interval, mean_interval, share_interval
+from hedon.statistic.interval import AMOUNT, ANY, Interval, mean_interval, share_interval
 from hedon.sweep.error import SweepError
 from hedon.sweep.row import KEYS
 
@@ -84,9 +84,9 @@ def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[P
     """
     made = []
     if not factors:
-        return [Point((), _response_interval(table[response]))]
+        return [Point((), _response_interval(table, response))]
     for at, rows in table.sort(*factors).group_by(*factors, maintain_order=True):
-        made.append(Point(tuple(at), _response_interval(rows[response])))
+        made.append(Point(tuple(at), _response_interval(rows, response)))
     return made
 
 
@@ -102,14 +102,15 @@ def binned(table: pl.DataFrame, factor: str, response: str) -> list[Point]:
     count = min(BINS, max(1, rows.height // 4))
     edges = [round(i * rows.height / count) for i in range(count + 1)]
     groups = [rows[low:high] for low, high in pairwise(edges) if high > low]
-    return [Point((_mean(group[factor]),), _response_interval(group[response])) for group in groups]
+    return [Point((_mean(group[factor]),), _response_interval(group, response)) for group in groups]
 
 
-def _response_interval(values: pl.Series) -> Interval:
+def _response_interval(table: pl.DataFrame, response: str) -> Interval:
     """Mean over worlds: Student's t interval; of yes and no a share, with Jeffreys' interval."""
-    known = values.drop_nulls()
-    if values.dtype != pl.Boolean:
-        return mean_interval(known.cast(pl.Float64).to_list())
+    known = table[response].drop_nulls()
+    if known.dtype != pl.Boolean:
+        is_amount = any(_title(response, key) for key in TITLES)
+        return mean_interval(known.cast(pl.Float64).to_list(), within=AMOUNT if is_amount else ANY)
     if not len(known):
         return Interval(None, None, None, 0)
     count = int(known.sum())

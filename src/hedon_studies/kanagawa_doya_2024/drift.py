@@ -76,7 +76,7 @@ def make_drift(
 def _test_rows(
     label: str, worlds: Sequence[Sequence[WorldDrift]], rewards: Mapping[str, str]
 ) -> Iterator[dict[str, Any]]:
-    """Both tests of each weight, without bounds below three worlds."""
+    """Both tests of each weight, without bounds below five worlds."""
     names = {**rewards, **MARKER}
     known = [[found for found in world if found.weight in names] for world in worlds]
     for test in drift_tests(known, list(rewards), list(MARKER), {}, np.random.default_rng(SEED)):

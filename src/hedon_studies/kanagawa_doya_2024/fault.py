@@ -27,8 +27,9 @@ _EFFECT = (
     "of A and B is A's effect with B minus A's effect without B, and that of more is likewise the interaction of all "
     "but one with that one minus without it (coding ±1/2, products of columns; cells count alike). Lifetimes and rates "
     "of food are compared by their logarithms, so effects are ratios and interactions ratios of ratios. Intervals and "
-    "p: Student's t with the variance of each cell's worlds and Satterthwaite's degrees of freedom (Welch), given where "
-    "every cell has three worlds or all have equally many; p_holm is corrected for all effects on one response. seed_low and seed_high are the least and largest of the "
+    "p: Student's t with the variance of each cell's worlds and Satterthwaite's degrees of freedom (Welch), where each "
+    "cell has three worlds or all have equally many; p_holm is corrected for all effects on one response. seed_low and "
+    "seed_high are the least and largest of the "
     "same effect within single seeds."
 )
 _CELLS_DRAWN = (

@@ -8,7 +8,7 @@ from typing import Any
 import polars as pl
 
 from hedon.analysis import ResultTable, WorldRecord, food_per_agent_step, food_per_step, lifetime, make_table
-from hedon.statistic import mean_interval
+from hedon.statistic import AMOUNT, SHARE, mean_interval
 from hedon.study import Condition, Item, ItemInputs, count_extinct, missing, present, sentences, steps_reached
 from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, SIZES
 from hedon_studies.kanagawa_doya_2024.paper import paper_figures
@@ -64,7 +64,7 @@ def _world_rows(worlds: Mapping[str, Sequence[WorldRecord]]) -> Iterator[dict[st
 def _rows(condition: Condition, worlds: Sequence[WorldRecord], by_world: pl.DataFrame) -> Iterator[dict[str, Any]]:
     mine, paper = by_world.filter(pl.col("condition") == condition.label), paper_figures(condition.preset)
     for column, (quantity, reported) in _QUANTITIES.items():
-        interval = mean_interval(mine[column])
+        interval = mean_interval(mine[column], within=SHARE if column == "censored" else AMOUNT)
         figure = getattr(paper, reported) if reported else None
         yield {
             "condition": condition.label,

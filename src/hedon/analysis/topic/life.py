@@ -15,7 +15,7 @@ from hedon.analysis.topic.cohort import cohort_rows, complete_cohorts, incomplet
 from hedon.analysis.world.budget import energy_budget
 from hedon.analysis.world.population import run_tail
 from hedon.analysis.world.record import Conditions, WorldRecord, labels
-from hedon.statistic.interval import Interval, mean_interval
+from hedon.statistic.interval import AMOUNT, ANY, SHARE, Interval, mean_interval
 from hedon.statistic.survival import SurvivalCurve, exposure_mean, restricted_mean, survival_curve
 
 _AGES = 200  # points of a survival curve in the records of the analysis
@@ -39,7 +39,8 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
         "restricted_bias": "error of the dead's restricted mean",
         "exposure_mean": "steps lived per death",
     }
-    summary = over_worlds(worlds_table.rows, (), quantities) + medians
+    within = {name: AMOUNT for name in quantities if name != "restricted_bias"}
+    summary = over_worlds(worlds_table.rows, (), quantities, within) + medians
     note = (
         "The restricted mean is that of lifetimes cut off at an age that 20 agents of each living world reached; the "
         "error is what the dead alone give instead, minus it. Steps per death are the mean life if age did not matter. "
@@ -73,7 +74,7 @@ def food(conditions: Conditions) -> list[ResultTable]:
         "The first rule, the paper's as we read it, counts a short life as much as a long one; the second is what is "
         "eaten in a step."
     )
-    summary = over_worlds(worlds_table.rows, ("kind",), quantities)
+    summary = over_worlds(worlds_table.rows, ("kind",), quantities, AMOUNT)
     return [make_table("food", "Food, means over worlds [1/step]", summary, note), worlds_table]
 
 
@@ -87,13 +88,15 @@ def reproductive_success(conditions: Conditions) -> list[ResultTable]:
         "childless": "share without children",
         "top_tenth": "share of children of the top tenth",
     }
+    within = dict.fromkeys(quantities, AMOUNT) | dict.fromkeys(("childless", "top_tenth"), SHARE)
     by_world = world_means(complete_cohorts(worlds_table.rows), (), tuple(quantities))
+    summary = over_worlds(by_world, (), quantities, within)
     note = (
         f"Over cohorts of which at least {100 * COMPLETE:.0f} % have died. If children came by chance alone, in "
         "lives of exponential length, the opportunity would be 1 + 1 / mean."
     ) + incomplete_note(worlds_table.rows)
     return [
-        make_table("reproduction", "Children per life, means over worlds", over_worlds(by_world, (), quantities), note),
+        make_table("reproduction", "Children per life, means over worlds", summary, note),
         worlds_table,
     ]
 
@@ -111,7 +114,7 @@ def generation(conditions: Conditions) -> list[ResultTable]:
         "parent_age": "age of parents at a birth [step]",
         "line_time": "steps per generation reached",
     }
-    summary = over_worlds(worlds_table.rows, (), quantities)
+    summary = over_worlds(worlds_table.rows, (), quantities, AMOUNT)
     return [make_table("generation", "Generations, means over worlds", summary), worlds_table]
 
 
@@ -128,7 +131,8 @@ def energy(conditions: Conditions) -> list[ResultTable]:
     names = ["eaten", "basic", "action", "forgiven", "capped", "lost", "shared"]
     names += [name for name in ("hunted", "damage") if name in worlds_table.rows.columns]
     quantities = {name: name for name in names} | {"forgiven_share": "share forgiven"}
-    summary = over_worlds(worlds_table.rows, ("part",), quantities)
+    within = dict.fromkeys(quantities, AMOUNT) | {"eaten": ANY, "forgiven_share": SHARE}
+    summary = over_worlds(worlds_table.rows, ("part",), quantities, within)
     note = (
         "Eaten: taken up with food; poison counts negative. Basic and action: charged for living and for acting. "
         "Forgiven: charged but not paid, because energy cannot fall below 0; its share is that of all charges. Capped: "
@@ -154,7 +158,7 @@ def _median_rows(
     medians = [curve.quantile()[0] for curve in curves]
     head = {"condition": condition}
     if all(median is not None for median in medians):
-        return [head | {"quantity": "median"} | vars(mean_interval(medians))]
+        return [head | {"quantity": "median"} | vars(mean_interval(medians, within=AMOUNT))]
     lived, died = (np.concatenate(part) for part in zip(*lives, strict=True))
     pooled = survival_curve(lived, died).quantile()[0]
     if pooled is None:

@@ -8,6 +8,7 @@ from hedon.analysis.descent.lineage import coalescence, lines_through_time
 from hedon.analysis.result import ResultTable, make_table, over_worlds
 from hedon.analysis.world.record import Conditions, labels
 from hedon.analysis.world.regime import REGIMES, regimes
+from hedon.statistic.interval import AMOUNT, SHARE
 
 _TIMES = 20  # at which the coalescence is computed
 _LINE_TIMES = 100  # at which lines are counted
@@ -37,14 +38,13 @@ def genealogy_topic(conditions: Conditions) -> list[ResultTable]:
         "largest": "share of the largest family",
         "depth": "time to the common ancestor [step]",
     }
+    summary = over_worlds(last, (), quantities, {"families": AMOUNT, "largest": SHARE, "depth": AMOUNT})
     note = (
         "Of those alive at the end. The time to the common ancestor is known only in worlds in which a single family "
         "is left; elsewhere it is longer than the run."
     )
     return [
-        make_table(
-            "genealogy", "Common descent of the living, means over worlds", over_worlds(last, (), quantities), note
-        ),
+        make_table("genealogy", "Common descent of the living, means over worlds", summary, note),
         over_time,
         ResultTable(
             "lineage",
@@ -77,5 +77,5 @@ def regime(conditions: Conditions) -> list[ResultTable]:
         "Share of the steps; the rules are in docs/guide/analysis.md. A weight is selected in another way in each: "
         "starving worlds drift, food-limited ones compete, idle ones stand still."
     )
-    summary = over_worlds(shares, (), {name: name for name in REGIMES})
+    summary = over_worlds(shares, (), {name: name for name in REGIMES}, SHARE)
     return [make_table("regime", "Share of the run in each regime, means over worlds", summary, note), over_time]
