@@ -53,11 +53,20 @@ std::string PythonSimulation::step_batch(const BatchCall& call, const BatchIn& i
   const Species& own = simulation.shape().of[call.species];
   const size_t slots = static_cast<size_t>(own.capacity()), agents = slots * static_cast<size_t>(rows);
   const size_t entries = static_cast<size_t>(own.network.observation.size());
+  if (call.slots != own.capacity() || call.entries != static_cast<int64_t>(entries))
+    return "compiled for other worlds: trace the program again";
   for (int64_t i = 0; i < rows && call.begins == 0; ++i) {
     if (in.world[i] != i) return "the states are not in the order of the worlds";
     if (in.turn[i] != turn_)
-      return "stale state: it is of turn " + std::to_string(in.turn[i]) + ", and its worlds are at turn " +
-             std::to_string(turn_) + ": a later step or reset has used them; go on with the state that it returned";
+      return "stale state: a later step or reset has used its worlds, or they are those of another environment; go on "
+             "with the state that was returned last";
+  }
+  if (call.begins == 0) {
+    std::vector<float> paid(agents);
+    std::vector<int32_t> living(agents);
+    simulation.read_rewards(static_cast<int32_t>(call.species), {nullptr, paid.data(), living.data()});
+    if (memcmp(living.data(), in.ids, agents * sizeof(int32_t)) != 0)
+      return "agent_id: is not that of the state that was returned last";
   }
   memset(out.observations, 0, agents * entries * sizeof(float));
   if (call.begins != 0) {

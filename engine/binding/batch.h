@@ -15,6 +15,8 @@ struct BatchCall {
   int64_t repeat;     ///< steps of the worlds in one step
   int64_t max_steps;  ///< steps of a world after which it begins again; 0 for no end
   int64_t begins;     ///< 1 to begin all worlds: what they were before is then not read
+  int64_t slots;      ///< of the species in a world
+  int64_t entries;    ///< of an observation
 };
 
 /// What a call reads: a row for each world.

@@ -120,6 +120,7 @@ PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer
   Registry& all = registry();
   const std::lock_guard lock(all.mutex);
   id_ = ++all.last;
+  turn_ = static_cast<uint32_t>(static_cast<uint64_t>(id_) * 0x9E3779B9u);  // far from those of others
   all.held[id_] = this;
 }
 

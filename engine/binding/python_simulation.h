@@ -48,6 +48,10 @@ class PythonSimulation {
   /// Returns what `use` returns, or why it could not be called.
   static std::string with(int64_t id, const std::function<std::string(PythonSimulation&)>& use);
 
+  /// Of the state that `step_batch` goes on from; a copy of an environment takes over that of the original.
+  uint32_t turn() const { return turn_; }
+  void set_turn(uint32_t turn) { turn_ = turn; }
+
   /// See `hedon::step_batch`.
   std::string step_batch(const BatchCall& call, const BatchIn& in, const BatchOut& out, int64_t rows);
 
@@ -93,7 +97,7 @@ class PythonSimulation {
   std::atomic<bool> running_{false};
   int64_t id_ = 0;
   std::vector<NamedRule> rules_;
-  uint32_t turn_ = 0;  ///< counts calls of `step_batch`
+  uint32_t turn_;  ///< counts calls of `step_batch`, from a number of its own, so that no other's states are taken
   int64_t piece_ = 1;  ///< steps between two checks for Ctrl-C
 };
 

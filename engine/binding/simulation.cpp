@@ -387,6 +387,9 @@ void bind_simulation(nb::module_& module) {
           "Seconds that devices spent in each kernel, and copying; zeros where there is no device.")
       .def_prop_ro(
           "id", [](S& s) { return s.id(); }, "A number that no other simulation of this process has, for `step_batch`.")
+      .def_prop_rw(
+          "turn", [](S& s) { return s.turn(); }, [](S& s, uint32_t turn) { s.set_turn(turn); },
+          "That `step_batch` goes on from.")
       .def_prop_ro("device_count", [](S& s) { return s.get().device_count(); })
       .def_prop_ro("world_count", [](S& s) { return s.get().world_count(); })
       .def_prop_ro("threads", [](S& s) { return s.get().pool().size(); })

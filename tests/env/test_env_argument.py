@@ -283,7 +283,8 @@ def test_other_arguments_of_pettingzoo_are_named():
     world: Any = ParallelEnv(CONFIG)
     wrong = {
         "seeds = 'x'": lambda: world.reset(seed="x"),
-        "seed = None": lambda: new(CONFIG, seed=None),
+        "seed = -1": lambda: new(CONFIG, seed=-1),
+        "options = 5: must be a dict": lambda: world.reset(options=5),
         "max_steps = -1": lambda: new(CONFIG, max_steps=-1),
         "agent '5': there is no such agent": lambda: world.action_space(5),
         "agent 'agent_²'": lambda: world.action_space("agent_²"),

@@ -1,6 +1,8 @@
 """Worlds inside programs of JAX, against a plain loop over the same worlds."""
 
 import gc
+import subprocess
+import sys
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
@@ -109,10 +111,58 @@ def test_a_stale_state_is_an_error_by_its_name():
     action = np.zeros((12, 2), np.float32)
     _, first = jax.jit(worlds.reset)(key)
     _, second, *_ = step(key, first, action)
-    with pytest.raises(Exception, match=r"hedon: stale state: it is of turn 1, and its worlds are at turn 2"):
+    with pytest.raises(Exception, match=r"hedon: stale state: a later step or reset has used its worlds"):
         jax.block_until_ready(step(key, first, action))
     jax.block_until_ready(step(key, second, action))  # the worlds are as they were
     assert worlds.simulation.worlds[0].step == 2
+
+
+def test_states_of_other_worlds_are_refused():
+    worlds, others = (env.JaxEnv(CONFIG, 2, threads=1) for _ in range(2))
+    keys = jax.random.split(jax.random.key(0), 2)
+    action = np.zeros((2, 12, 2), np.float32)
+    (_, state), (_, foreign) = (jax.vmap(each.reset)(keys) for each in (worlds, others))
+    swapped = state._replace(agent_id=state.agent_id[:, ::-1])
+    for wrong, says in ((foreign, "stale state"), (swapped, "agent_id: is not that of the state")):
+        with pytest.raises(Exception, match=f"hedon: {says}"):
+            jax.block_until_ready(jax.vmap(worlds.step)(keys, wrong, action))
+    assert [world.step for world in worlds.simulation.worlds] == [0, 0]
+    jax.block_until_ready(jax.vmap(worlds.step)(keys, state, action))
+
+
+@pytest.mark.parametrize(
+    ("part", "change"),
+    [
+        ("agent_id", lambda each: each[:1]),
+        ("agent_id", lambda each: each.astype(np.float32)),
+        ("turn", lambda each: each.astype(np.int32)),
+        ("world", lambda each: each[None]),
+    ],
+)
+def test_states_of_another_shape_or_type_are_refused(part, change):
+    worlds = env.JaxEnv(CONFIG, threads=1)
+    _, state = worlds.reset(jax.random.key(0))
+    wrong = state._replace(**{part: change(getattr(state, part))})
+    with pytest.raises(ArgumentError, match=rf"state\.{part}: must be u?int32 of shape"):
+        worlds.step(jax.random.key(1), wrong, np.zeros((12, 2), np.float32))
+
+
+def test_no_traceback_follows_an_error_that_was_caught():
+    program = """
+import jax, numpy as np
+from hedon import env
+worlds = env.JaxEnv("baseline", overrides=["population.capacity=12", "population.initial_count=8"])
+key, action = jax.random.key(0), np.zeros((12, 2), np.float32)
+_, state = jax.jit(worlds.reset)(key)
+step = jax.jit(worlds.step)
+jax.block_until_ready(step(key, state, action))
+try:
+    jax.block_until_ready(step(key, state, action))
+except Exception as error:
+    print("stale state" in str(error))
+"""
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout.strip(), ended.stderr) == (0, "True", "")
 
 
 def test_what_is_wrong_is_named_and_changes_nothing():

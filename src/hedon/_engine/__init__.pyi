@@ -172,6 +172,13 @@ class Simulation:
         """
 
     @property
+    def turn(self) -> int:
+        """That `step_batch` goes on from."""
+
+    @turn.setter
+    def turn(self, arg: int, /) -> None: ...
+
+    @property
     def device_count(self) -> int: ...
 
     @property

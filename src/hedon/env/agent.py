@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
+from hedon.env.argument import options_of
+from hedon.env.copied import Copied
 from hedon.env.group import Form
 from hedon.env.make import make
 from hedon.env.vector import RENDER_MODES
@@ -19,7 +21,7 @@ Policy = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 """From observations (agents, entries) to actions (agents, 2)."""
 
 
-class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
+class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     """One agent among others: an episode is its life, from the beginning of a world to its death.
 
     The agent is the first founder of its species. Other species act by their `learning.policy`. Others of the same
@@ -29,7 +31,7 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     Args:
         config: Settings of the world, as for `hedon.make`, like all that follow but `others`.
         species: Of the agent: one name; None for the only one whose policy is `external`, or the only one.
-        seed: Of the first world.
+        seed: Of the first world; None for one drawn by chance.
         actions: What their numbers are.
         repeat: Steps of the world in one step.
         max_steps: Steps of the world after which the episode is truncated.
@@ -50,7 +52,7 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self,
         config: Config | str | Path,
         species: str | None = None,
-        seed: int = 0,
+        seed: int | None = None,
         actions: Form = "unit",
         repeat: int = 1,
         max_steps: int = 0,
@@ -85,14 +87,16 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
 
         Args:
             seed: Of the world; None for the first one, and then for seeds drawn from it.
-            options: None are known; Gymnasium has the argument.
+            options: Ignored; Gymnasium has the argument.
 
         Returns:
             The observation (entries,), and the id and the slot of the agent.
 
         Raises:
+            ArgumentError: A seed is wrong, or `options` is no dictionary.
             EngineError: No agent of the species is there when the world begins.
         """
+        options_of(options)
         super().reset(seed=seed)
         self._vector.reset(None if seed is None else [seed])
         founders = np.flatnonzero(self._group.alive[0])
@@ -133,6 +137,13 @@ class AgentEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         if died:
             self._slot = -1
         return told
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_group"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        (self._group,) = self._vector.groups.values()
 
     def _asked(self, answer: Any) -> NDArray[Any]:
         """What the policy of the others answered. ArgumentError: it is no table of actions."""

@@ -1,6 +1,6 @@
 """Checks what environments are made with."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,8 @@ from hedon.experiment.argument import integer, seed_list
 from hedon.experiment.simulation import MAX_WORLD_SEED
 from hedon.text import brief
 
+_DRAWN = 2**32
+"""Seeds that are drawn by chance are below."""
 RESET_MASK = "reset_mask"
 """The option of `reset` that Gymnasium's vector environments have too."""
 
@@ -30,6 +32,8 @@ def loaded(config: Config | str | Path, overrides: Iterable[str]) -> Config:
         ConfigError: A setting is wrong.
         ArgumentError: There are overrides of a config that is loaded already.
     """
+    if isinstance(overrides, str) or not isinstance(overrides, Iterable):
+        raise ArgumentError(f"overrides = {brief(repr(overrides))}: must be a list of texts, such as ['path=value']")
     if isinstance(config, str | Path):
         return load_config(config, overrides=overrides)
     if any(True for _ in overrides):
@@ -80,11 +84,19 @@ def with_callers(config: Config, names: Sequence[str]) -> Config:
     return config
 
 
+def options_of(options: Any) -> dict[str, Any]:
+    """What a caller gave to `reset` besides the seed. ArgumentError: it is no dictionary."""
+    if not isinstance(options, Mapping | None):
+        raise ArgumentError(f"options = {brief(repr(options))}: must be a dict, or None")
+    return dict(options or {})
+
+
 def world_seeds(seed: Any, worlds: int) -> tuple[int, ...]:
     """The seed of each world.
 
     Args:
-        seed: Of the first, whose followers have the next numbers; or a list with one for each.
+        seed: Of the first, whose followers have the next numbers; or a list with one for each; None for a first one
+            drawn by chance.
         worlds: How many there are.
 
     Raises:
@@ -95,6 +107,8 @@ def world_seeds(seed: Any, worlds: int) -> tuple[int, ...]:
         if len(seeds) != worlds:
             raise ArgumentError(f"seed: there must be {worlds}, one per world, not {len(seeds)}")
         return seeds
+    if seed is None:
+        seed = int(np.random.default_rng().integers(_DRAWN))
     first = integer("seed", seed, 0, MAX_WORLD_SEED - worlds + 1)
     return tuple(range(first, first + worlds))
 
@@ -111,7 +125,7 @@ def chosen(name: str, value: Any, known: Sequence[Any], *, empty: bool = False) 
     Raises:
         ArgumentError: It is none of them.
     """
-    if value in known or (empty and value is None):
+    if (empty and value is None) or (isinstance(value, str) and value in known):
         return value
     near = nearest(value, known) if isinstance(value, str) else None
     hint = f"; did you mean {near}?" if near else ""
@@ -128,7 +142,7 @@ def reset_mask(options: Any, worlds: int) -> NDArray[np.bool_]:
     Raises:
         ArgumentError: There is no such option, or it is no such mask.
     """
-    given = dict(options or {})
+    given = options_of(options)
     mask = np.asarray(given.pop(RESET_MASK, np.ones(worlds, np.bool_)))
     if given:
         unknown = next(iter(given))

@@ -24,6 +24,7 @@ from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
 from hedon.env.argument import chosen, driven, loaded, with_callers
+from hedon.env.copied import Copied
 from hedon.env.group import ACTIONS, FORMS, NOBODY, Form, Group
 from hedon.env.space import Spaces
 from hedon.error import ArgumentError, HedonError
@@ -48,10 +49,11 @@ class State(NamedTuple):
     agent_id: jax.Array
 
 
-class JaxEnv:
+class JaxEnv(Copied):
     """Worlds that a program of JAX drives, with functions of one world as gymnax has them.
 
-    With several worlds, call the functions by `jax.vmap` over all of them. A world begins again by itself, with a seed
+    With several worlds, call the functions by `jax.vmap` over all of them. A copy has worlds of its own, which go on
+    from the same state. A world begins again by itself, with a seed
     from the key of the step, when no driven agent is left, or at `max_steps`.
 
     Args:
@@ -114,6 +116,16 @@ class JaxEnv:
         self._actions: Form = actions
         _register()
 
+    def __getstate__(self) -> dict[str, Any]:
+        return self.__dict__ | {"turn": self.simulation.engine.turn}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        turn = state.pop("turn")
+        self.__dict__.update(state)
+        self.simulation._driven = True
+        self.simulation.engine.turn = turn
+        _register()
+
     @cached_property
     def _spaces(self) -> Spaces:
         config, motor = self.simulation.config, self.simulation.config.species[self._name].motor
@@ -168,9 +180,19 @@ class JaxEnv:
     def _call(self, key: jax.Array, state: State, action: jax.Array, *, begins: bool) -> tuple[State, Any]:
         if action.shape != (self.slots, len(ACTIONS)):
             raise ArgumentError(f"action: must be of shape {(self.slots, len(ACTIONS))}, not {action.shape}")
-        numbers = (self.simulation.engine.id, self._species, self._form, self._repeat, self._max_steps, int(begins))
-        call = np.array([_engine.batch_address(), *numbers], np.int64)
         slots = (self.slots,)
+        for name, given, shape, kind in (
+            ("world", state.world, (), jnp.int32),
+            ("turn", state.turn, (), jnp.uint32),
+            ("agent_id", state.agent_id, slots, jnp.int32),
+        ):
+            if jnp.shape(given) != shape or jnp.asarray(given).dtype != kind:
+                raise ArgumentError(
+                    f"state.{name}: must be {np.dtype(kind)} of shape {shape}, as reset and step return it, not "
+                    f"{jnp.asarray(given).dtype} of shape {jnp.shape(given)}"
+                )
+        numbers = (self.simulation.engine.id, self._species, self._form, self._repeat, self._max_steps, int(begins))
+        call = np.array([_engine.batch_address(), *numbers, self.slots, len(self.columns)], np.int64)
         shapes = [((), jnp.int32), ((), jnp.uint32), (slots, jnp.int32), ((*slots, len(self.columns)), jnp.float32)]
         shapes += [(slots, jnp.float32), (slots, jnp.bool_), ((), jnp.bool_)]
         results = [jax.ShapeDtypeStruct(shape, kind) for shape, kind in shapes]

@@ -12,7 +12,7 @@ from hedon.env.vector import VectorEnv
 def make(
     config: Config | str | Path,
     worlds: int = 1,
-    seed: int | Sequence[int] = 0,
+    seed: int | Sequence[int] | None = None,
     species: str | Sequence[str] | None = None,
     actions: Form = "unit",
     repeat: int = 1,
@@ -29,7 +29,8 @@ def make(
     Args:
         config: Settings of the worlds: a config, the name of a preset, or the path of a file.
         worlds: How many worlds advance together.
-        seed: Of the first world, whose followers have the next numbers; or a list with one for each world.
+        seed: Of the first world, whose followers have the next numbers; a list with one for each world; or None for a
+            first one drawn by chance (`simulation.seeds` tells them).
         species: Whose agents the caller drives: a name, several, or by default those whose policy is `external`, or
             all where there are none. A config without `[species]` has the species `agent`. All others act by their
             `learning.policy`.

@@ -10,6 +10,8 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
+from hedon.env.argument import options_of
+from hedon.env.copied import Copied
 from hedon.env.group import ACTIONS, Form, Group
 from hedon.env.make import make
 from hedon.env.vector import RENDER_MODES, VectorEnv
@@ -19,7 +21,7 @@ from hedon.text import brief
 Values = dict[str, NDArray[np.float32]]
 
 
-class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
+class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
     """A world whose agents the caller drives. An agent's name is its species and its id: `agent_17`.
 
     A newborn comes into `agents` with its first observation and a reward of 0. An agent that dies
@@ -35,7 +37,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
     Args:
         config: Settings of the world, as for `hedon.make`, like all that follow but `slots`.
         species: Whose agents the caller drives.
-        seed: Of the first world.
+        seed: Of the first world; None for one drawn by chance.
         actions: What their numbers are.
         repeat: Steps of the world in one step.
         max_steps: Steps after which all agents are truncated; 0 for no end but extinction.
@@ -53,7 +55,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         self,
         config: Config | str | Path,
         species: str | Sequence[str] | None = None,
-        seed: int = 0,
+        seed: int | None = None,
         actions: Form = "unit",
         repeat: int = 1,
         max_steps: int = 0,
@@ -99,11 +101,15 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
 
         Args:
             seed: Of the new world; None for the first one, and then for seeds drawn from it.
-            options: None are known; PettingZoo has the argument.
+            options: Ignored; PettingZoo has the argument.
 
         Returns:
             By the names of the founders: observations (entries,), and infos.
+
+        Raises:
+            ArgumentError: A seed is wrong, or `options` is no dictionary.
         """
+        options_of(options)
         self._vector.reset(None if seed is None else [seed])
         self._spaces.clear()
         self._begun = True
@@ -163,11 +169,6 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Any, Any]):
     def close(self) -> None:
         """Has nothing to close."""
         self._vector.close()
-
-    def __deepcopy__(self, memo: Any) -> "ParallelEnv":
-        made = type(self).__new__(type(self))
-        made.__setstate__(self.__getstate__() | {"_vector": self._vector.clone()})
-        return made
 
     def __getstate__(self) -> dict[str, Any]:
         rows = {name: (self._species_of(group), row) for name, (group, row) in self._row.items()}

@@ -1,5 +1,6 @@
 """Slots of worlds as environments of Stable-Baselines3, which must be installed: `pip install stable-baselines3`."""
 
+import time
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -7,21 +8,22 @@ import numpy as np
 from stable_baselines3.common.vec_env import VecEnv  # pyright: ignore[reportMissingImports]
 
 from hedon.env.argument import RESET_MASK
-from hedon.env.group import Group
+from hedon.env.copied import Copied
+from hedon.env.group import NOBODY, Group
 from hedon.env.vector import VectorEnv
 from hedon.error import ArgumentError
 
 
-class SlotVecEnv(VecEnv):
+class SlotVecEnv(VecEnv, Copied):
     """Each slot of a species in each world as an environment: one network acts for all agents, and learns from all.
 
     It needs Stable-Baselines3, which hedon does not bring: `pip install stable-baselines3`.
 
-    An episode is a life: it ends at a death (`dones`), and the next one begins at the birth of who takes the slot.
-    In between, while nobody lives there, is an episode of its own that shows zeros and pays 0; its infos have
-    `alive: False`. Worlds that have come to `max_steps`, or in which no agent of the species is left, begin again with
-    seeds drawn from the first ones; if time ended a life, its info has `TimeLimit.truncated`. The last observation of a
-    life is in `terminal_observation`: zeros after death.
+    An episode is a life: it ends at a death (`dones`), and its info has `episode`, with what it was paid (`r`) and how
+    many steps it took (`l`), as Stable-Baselines3's monitors write it; none is needed. While nobody lives in a slot, it
+    shows zeros and pays 0, and its infos have `alive: False`. Worlds that have come to `max_steps`, or in which no
+    agent of the species is left, begin again with seeds drawn from the first ones; if time ended a life, its info has
+    `TimeLimit.truncated`. The last observation of a life is in `terminal_observation`: zeros after death.
 
     Args:
         worlds: Of `hedon.make`, with one driven species; nobody else may step or reset them.
@@ -37,6 +39,8 @@ class SlotVecEnv(VecEnv):
         self.group: Group = next(iter(worlds.groups.values()))
         self.render_mode = worlds.render_mode
         self._given: Any = self.group.actions
+        self._paid, self._lived = np.zeros(self.group.ids.shape), np.zeros(self.group.ids.shape, np.int64)
+        self._begun = time.monotonic()
         super().__init__(self.group.ids.size, worlds.single_observation_space, worlds.single_action_space)
 
     def reset(self) -> Any:
@@ -44,6 +48,7 @@ class SlotVecEnv(VecEnv):
         seed = next((each for each in self._seeds if each is not None), None)  # of the first world
         self.worlds.reset(seed=seed)
         self._reset_seeds()
+        self._paid[...], self._lived[...] = 0, 0
         return self._table(self.group.observations)
 
     def step_async(self, actions: Any) -> None:
@@ -56,17 +61,35 @@ class SlotVecEnv(VecEnv):
         worlds.step(self._given)
         rewards = group.rewards.ravel().copy()
         over = group.truncated.any(axis=1) | ~group.alive.any(axis=1)
-        dones = (group.terminated | group.born | over[:, None]).ravel()
+        there = group.ids_before != NOBODY
+        self._paid += group.rewards
+        self._lived += there
+        ended = there & (group.terminated | over[:, None])
+        lives = [(float(self._paid[at]), int(self._lived[at])) for at in zip(*np.nonzero(ended), strict=True)]
+        self._paid[ended], self._lived[ended] = 0, 0
+        dones = ended.ravel()
         cut = (group.truncated & ~group.born).ravel()
         rows = self._table(group.observations)
         nothing = np.zeros(len(group.columns), np.float32)
         if over.any():
             worlds.reset(options={RESET_MASK: over})
         infos: list[dict[str, Any]] = [{"alive": each} for each in group.alive.ravel().tolist()]
-        for i in np.flatnonzero(dones).tolist():
+        now = round(time.monotonic() - self._begun, 6)
+        for i, (paid, lived) in zip(np.flatnonzero(dones).tolist(), lives, strict=True):
             last = rows[i] if cut[i] else nothing
             infos[i] |= {"terminal_observation": last, "TimeLimit.truncated": bool(cut[i])}
+            infos[i]["episode"] = {"r": paid, "l": lived * worlds.repeat, "t": now}
         return self._table(group.observations) if over.any() else rows, rewards, dones, infos
+
+    def __getstate__(self) -> dict[str, Any]:
+        given = None if self._given is self.group.actions else self._given
+        return {name: value for name, value in self.__dict__.items() if name != "group"} | {"_given": given}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        (self.group,) = self.worlds.groups.values()
+        if self._given is None:
+            self._given = self.group.actions
 
     def close(self) -> None:
         """Closes the worlds."""

@@ -37,7 +37,7 @@ class VectorEnv:
     Args:
         config: Settings of the worlds; then everything as for `hedon.make`.
         worlds: How many.
-        seed: Of the first world, or of each.
+        seed: Of the first world, or of each; None for a first one drawn by chance.
         species: Whose agents the caller drives.
         actions: What their numbers are.
         repeat: Steps of the worlds in one step.
@@ -74,7 +74,7 @@ class VectorEnv:
         self,
         config: Config,
         worlds: int = 1,
-        seed: int | Sequence[int] = 0,
+        seed: int | Sequence[int] | None = None,
         species: str | Sequence[str] | None = None,
         actions: Form = "unit",
         repeat: int = 1,

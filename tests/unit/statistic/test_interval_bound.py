@@ -20,7 +20,9 @@ def test_an_interval_is_cut_at_what_is_possible(values):
 
 
 def test_a_table_says_what_is_possible_by_column():
-    rows = pl.DataFrame({"condition": ["one"] * 5, "energy": [0.1, 0.2, 0.1, 0.3, 9.0], "weight": [0.0, 0.0, 0.0, 0.0, 9.0]})
+    rows = pl.DataFrame(
+        {"condition": ["one"] * 5, "energy": [0.1, 0.2, 0.1, 0.3, 9.0], "weight": [0.0, 0.0, 0.0, 0.0, 9.0]}
+    )
     energy, weight = over_worlds(rows, (), {"energy": "energy", "weight": "weight"}, {"energy": AMOUNT})
     assert energy["low"] == 0.0
     assert weight["low"] < 0.0

@@ -1,0 +1,113 @@
+"""Copies of environments of every kind go on as the original would, and change nothing in it."""
+
+import copy
+import importlib.util
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from worlds import QUICK
+
+from hedon import env, load_config, make
+
+LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=12", "population.initial_count=8")
+CONFIG = load_config("baseline", overrides=LIVELY)
+STEPS = 12
+
+
+def _agent() -> tuple[Any, Callable[[Any], Any]]:
+    made = env.AgentEnv(CONFIG, seed=3)
+    seen = [made.reset(seed=3)[0]]
+
+    def go_on(of: Any) -> Any:
+        told = [of.step(np.array([0.3, -0.2], np.float32))]
+        if told[0][2]:
+            seen[:] = [of.reset()[0]]
+            told.append(seen[0])
+        return told, of.simulation.worlds[0].digest()
+
+    return made, go_on
+
+
+def _parallel(slots: bool) -> tuple[Any, Callable[[Any], Any]]:
+    made = env.ParallelEnv(CONFIG, seed=3, slots=slots)
+    made.reset(seed=3)
+
+    def go_on(of: Any) -> Any:
+        actions = {name: np.array([0.3, -0.2], np.float32) for name in of.agents}
+        return of.step(actions), list(of.agents), of.simulation.worlds[0].digest()
+
+    return made, go_on
+
+
+def _vector() -> tuple[Any, Callable[[Any], Any]]:
+    made = make(CONFIG, 2, seed=3)
+    made.reset()
+
+    def go_on(of: Any) -> Any:
+        of.actions[...] = 0.3
+        return copy.deepcopy(of.step(of.actions)), [world.digest() for world in of.simulation.worlds]
+
+    return made, go_on
+
+
+def _slot() -> tuple[Any, Callable[[Any], Any]]:
+    made = env.SlotVecEnv(make(CONFIG, 2, seed=3))
+    made.reset()
+
+    def go_on(of: Any) -> Any:
+        return of.step(np.full((24, 2), 0.3, np.float32))[:3], [world.digest() for world in of.worlds.simulation.worlds]
+
+    return made, go_on
+
+
+def _jax() -> tuple[Any, Callable[[Any], Any]]:
+    import jax
+
+    made = env.JaxEnv(CONFIG, 2, threads=1)
+    keys = jax.random.split(jax.random.key(0), 2)
+    states = {}
+    states[id(made)] = start = jax.vmap(made.reset)(keys)[1]
+
+    def go_on(of: Any) -> Any:
+        state = states.get(id(of), start)
+        seen, states[id(of)], paid, *_ = jax.vmap(of.step)(keys, state, jax.numpy.full((2, 12, 2), 0.3))
+        return np.asarray(seen), np.asarray(paid), [world.digest() for world in of.simulation.worlds]
+
+    return made, go_on
+
+
+KINDS = {
+    "vector": _vector,
+    "agent": _agent,
+    "parallel": lambda: _parallel(slots=False),
+    "slots": lambda: _parallel(slots=True),
+    "slot": _slot,
+    "jax": _jax,
+}
+NEEDS = {"slot": "stable_baselines3", "jax": "jax"}
+WAYS = {
+    "clone": lambda made: made.clone(),
+    "copy": copy.copy,
+    "deepcopy": copy.deepcopy,
+    "pickle": lambda made: pickle.loads(pickle.dumps(made)),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_copy_goes_on_as_the_original_would(kind, way):
+    if kind in NEEDS and importlib.util.find_spec(NEEDS[kind]) is None:
+        pytest.skip(f"needs {NEEDS[kind]}")
+    made, go_on = KINDS[kind]()
+    if kind != "jax":  # whose states are one line: those of the copy begin where those of the original are
+        for _ in range(3):
+            go_on(made)
+    made_too = WAYS[way](made)
+    told = [go_on(made) for _ in range(STEPS)]
+    np.testing.assert_equal([go_on(made_too) for _ in range(STEPS)], told)
+    for of in (made, made_too):
+        simulation = of.worlds.simulation if kind == "slot" else of.simulation
+        assert simulation._driven, "nobody else may step it"
