@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from worlds import QUICK
 
-from hedon import env, load_config, make
+from hedon import ArgumentError, Simulation, env, load_config, make
+from hedon.env.group import Group, Held
 
 LIVELY = (*QUICK, "birth.kappa=0.05", "hazard.alpha_age=0.01", "population.capacity=12", "population.initial_count=8")
 CONFIG = load_config("baseline", overrides=LIVELY)
@@ -111,3 +112,43 @@ def test_a_copy_goes_on_as_the_original_would(kind, way):
     for of in (made, made_too):
         simulation = of.worlds.simulation if kind == "slot" else of.simulation
         assert simulation._driven, "nobody else may step it"
+
+
+class _Named(Simulation):
+    note = "none"
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_copies_take_over_what_users_add(way):
+    simulation, worlds = _Named(CONFIG, [1]), make(CONFIG, seed=1)
+    for of in (simulation, worlds):
+        of.note = ["mine"]
+        copied = WAYS[way](of)
+        assert (type(copied), copied.note) == (type(of), ["mine"])
+        assert copied.note is not of.note
+
+
+def test_a_world_is_copied_with_its_simulation():
+    world = Simulation(CONFIG, [1]).worlds[0]
+    for way in (copy.copy, copy.deepcopy, pickle.dumps):
+        for of in (world, world.state) if way is not copy.copy else (world,):
+            with pytest.raises(ArgumentError, match="copy or pickle the simulation"):
+                way(of)
+
+
+ARRAYS = sorted(name for name in vars(Group) if isinstance(vars(Group)[name], Held))
+
+
+@pytest.mark.parametrize("name", ARRAYS)
+@pytest.mark.parametrize("change", ["shape", "dtype"])
+def test_arrays_in_another_form_are_refused(name, change):
+    worlds = make(CONFIG, 2, seed=1)
+    worlds.reset()
+    array = getattr(worlds.groups["agent"], name)
+    if change == "shape":
+        array.shape = (-1,) if array.ndim > 1 else (2, 1)
+    else:
+        array.dtype = f"V{array.dtype.itemsize}"
+    for call in (worlds.reset, lambda: worlds.step(np.zeros((2, 12, 2), np.float32))):
+        with pytest.raises(ArgumentError, match=f"{name}: must be as it was made"):
+            call()

@@ -71,7 +71,7 @@ WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
     "nothing": (put("actions", None), ARRAY),
     "another table": (put("observations", np.zeros(1)), r"observations: must be the array of \(1, 6, 95\) float32"),
     "other ids": (put("ids", np.zeros((1, 6), np.int64)), r"ids: must be the array of \(1, 6\) int32"),
-    "frozen": (freeze("observations"), "observations: must be as it was made, writeable and contiguous"),
+    "frozen": (freeze("observations"), "observations: must be as it was made, writeable, contiguous"),
     "not a number": (
         lambda w: w.groups["agent"].actions.__setitem__((0, 3, 1), np.nan),
         r"actions\[0, 3, 1\] \(right\) = nan: must be from -1 to 1",

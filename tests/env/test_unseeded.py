@@ -38,7 +38,7 @@ def test_other_arguments_of_a_wrong_type_are_named():
 
     with pytest.raises(ArgumentError, match=r"overrides = 5: must be a list of texts"):
         make("baseline", overrides=5)
-    with pytest.raises(ArgumentError, match=r"overrides = 'energy"):
-        make("baseline", overrides="energy.capacity=5")
+    with pytest.raises(ArgumentError, match=r"overrides = 5: must be a list of texts"):
+        load_config("baseline", overrides=5)
     with pytest.raises(ArgumentError, match="render_mode"):
         make("baseline", render_mode=np.array(["human", "rgb_array"]))

@@ -29,6 +29,7 @@ from hedon.config.schema.species import ONLY
 from hedon.config.toml import parse_toml, read_toml, require_plain
 from hedon.config.validate import build
 from hedon.error import ArgumentError
+from hedon.text import brief
 
 _FOLDER = Path(__file__).parent
 DEFAULT_PRESET = "baseline"
@@ -77,7 +78,7 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
         ConfigError: There is no such preset or file, or something in it is wrong; the error lists all problems.
         ArgumentError: An argument has a wrong type.
     """
-    texts = _texts(overrides)
+    texts = override_texts(overrides)
     path = _path_of(source)
     own = {"preset": source} if path is None else read_toml(path)
     return _config_of(own, path, fidelity, texts)
@@ -163,7 +164,10 @@ def describe_fidelity(name: str) -> str:
     return read_toml(_FOLDER / "overlays" / f"{name}.toml")["description"]
 
 
-def _texts(overrides: Iterable[str]) -> list[str]:
+def override_texts(overrides: Iterable[str]) -> list[str]:
+    """The overrides as a list, also of a single one. ArgumentError: they are no texts."""
+    if not isinstance(overrides, Iterable):
+        raise ArgumentError(f"overrides = {brief(repr(overrides))}: must be a list of texts such as energy.initial=20")
     texts = [overrides] if isinstance(overrides, str) else list(overrides)
     for text in texts:
         if not isinstance(text, str):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
-from hedon.config.load import load_config
+from hedon.config.load import load_config, override_texts
 from hedon.config.problem import nearest
 from hedon.error import ArgumentError
 from hedon.experiment.argument import integer, seed_list
@@ -32,11 +32,9 @@ def loaded(config: Config | str | Path, overrides: Iterable[str]) -> Config:
         ConfigError: A setting is wrong.
         ArgumentError: There are overrides of a config that is loaded already.
     """
-    if isinstance(overrides, str) or not isinstance(overrides, Iterable):
-        raise ArgumentError(f"overrides = {brief(repr(overrides))}: must be a list of texts, such as ['path=value']")
     if isinstance(config, str | Path):
         return load_config(config, overrides=overrides)
-    if any(True for _ in overrides):
+    if override_texts(overrides):
         raise ArgumentError("overrides: go with the name of a preset or a file; change a Config by config.with_(…)")
     return config
 

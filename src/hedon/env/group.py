@@ -117,12 +117,8 @@ class Group:
         self.meals = np.zeros((worlds, len(meal_names)), np.int64)
         self._index, self._form = index, form
         # None of these is ever replaced: looked up once, since steps of few agents are short.
-        self._shared = {
-            "actions": self.actions,
-            "observations": self.observations,
-            "rewards": self.rewards,
-            "ids": self.ids,
-        }
+        every = [(name, getattr(self, name)) for name, held in vars(Group).items() if isinstance(held, Held)]
+        self._shared = {name: (array, array.shape, array.dtype) for name, array in every}
         self._derived = (self.ids, self.ids_before, self.alive, self.born, self.terminated)
         self._eaten = self.meals.copy()
         # Within a repeat: rewards of who was born in it, by slot, and rows of those who were born and died in it.
@@ -158,10 +154,10 @@ class Group:
 
     def _check(self) -> None:
         """ArgumentError: an array is not as it was made."""
-        for name, array in self._shared.items():
+        for name, (array, shape, kind) in self._shared.items():
             flags = array.flags
-            if not (flags.c_contiguous and flags.writeable):
-                raise ArgumentError(f"{name}: must be as it was made, writeable and contiguous")
+            if not (flags.c_contiguous and flags.writeable and array.shape == shape and array.dtype is kind):
+                raise ArgumentError(f"{name}: must be as it was made, writeable, contiguous, {kind} of shape {shape}")
 
     def _tell(self, give: Any) -> None:
         """Gives the actions to a method of the engine, which refuses wrong ones. ArgumentError: it did."""
@@ -239,6 +235,7 @@ class Group:
 
     def _open(self, engine: Any, worlds: NDArray[np.bool_]) -> None:
         """Reads worlds, (worlds,), that have just begun; of the others nothing changes."""
+        self._check()
         self._forget(worlds)
         engine.read_observations(self._index, self.observations, np.empty_like(self.rewards), self.ids)
         np.not_equal(self.ids, NOBODY, out=self.alive)
@@ -270,12 +267,12 @@ def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
         ArgumentError: One is not what it can be.
     """
     given = _by_species(groups, actions)
+    for group in groups.values():
+        group._check()
     held = [(group, group.actions.copy()) for group, array in given if array is not group.actions]
     try:
         for group, array in given:
             group._take(array)
-        for group in groups.values():
-            group._check()
         if len(groups) > 1:  # nobody may be told anything before all are right
             for group in groups.values():
                 group._tell(engine.wrong_action)

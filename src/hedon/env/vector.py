@@ -3,6 +3,7 @@
 The engine reads and writes the arrays that the groups of agents hold: a step makes and copies none of them.
 """
 
+import copy
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -126,6 +127,7 @@ class VectorEnv:
         self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since it began
         self._eye: Any = None
         self._record: Any = None  # also of a copy: it has no records
+        self._own = {*vars(self), "_own", "_told", "spaces"}
 
     @property
     def observations(self) -> Any:
@@ -330,6 +332,7 @@ class VectorEnv:
         """A copy with worlds and arrays of its own, which goes on as this one does; it is not recorded."""
         made = type(self).__new__(type(self))
         made._go_on(self.simulation._fresh_one(), **self._given(), saved=self.save())
+        vars(made).update(copy.deepcopy(self._added()))
         return made
 
     def __copy__(self) -> Self:
@@ -339,12 +342,19 @@ class VectorEnv:
         return self.clone()
 
     def __getstate__(self) -> dict[str, Any]:
-        return self._given() | {"saved": self.save(), "worlds": self.simulation._arguments()}
+        given = {"saved": self.save(), "worlds": self.simulation._arguments(), "added": self._added()}
+        return self._given() | given
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         simulation = Simulation.__new__(Simulation)
         simulation.__setstate__(state.pop("worlds"))
+        added = state.pop("added")
         self._go_on(simulation, **state)
+        vars(self).update(added)
+
+    def _added(self) -> dict[str, Any]:
+        """Attributes of a subclass, or of a user, which copies take over."""
+        return {name: value for name, value in vars(self).items() if name not in self._own}
 
     def _given(self) -> dict[str, Any]:
         given = {"repeat": self.repeat, "max_steps": self.max_steps, "render_mode": self.render_mode}

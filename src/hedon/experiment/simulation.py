@@ -1,5 +1,6 @@
 """The engine's worlds as Python objects: make them from a config, run them, keep them, go on with them."""
 
+import copy
 import json
 import os
 from collections.abc import Sequence
@@ -110,6 +111,7 @@ class Simulation:
             name = f"{rule.use}.rule of {rule.species} ({rule.source.file}:{rule.source.name})"
             self.engine.set_rule(species, rule.use, rule.compiled.address, name)
         self.worlds = tuple(World(self.engine, i, self.config) for i in range(len(seeds)))
+        self._own = {*vars(self), "_own", "_mark"}  # what copies make anew; what a subclass adds, they take over
 
     @property
     def seeds(self) -> tuple[int, ...]:
@@ -228,6 +230,7 @@ class Simulation:
         """A copy with worlds of its own, which goes on as this one does; `copy.copy` and `deepcopy` give the same."""
         made = self._fresh_one()
         made._restore(self.save())
+        vars(made).update(copy.deepcopy(self._added()))
         return made
 
     def __copy__(self) -> Self:
@@ -237,15 +240,20 @@ class Simulation:
         return self.clone()
 
     def __getstate__(self) -> dict[str, Any]:
-        return self._arguments() | {"saved": self.save()}
+        return self._arguments() | {"saved": self.save(), "added": self._added()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        saved = state.pop("saved", None)
+        saved, added = state.pop("saved", None), state.pop("added", {})
         with _engine.FloatMode():
             given = engine_input(state.pop("config"))
         self._begin(given, **state)
         if saved is not None:
             self.restore(saved)
+        vars(self).update(added)
+
+    def _added(self) -> dict[str, Any]:
+        """Attributes of a subclass, or of a user."""
+        return {name: value for name, value in vars(self).items() if name not in self._own}
 
     def _arguments(self) -> dict[str, Any]:
         """What it was made with; the rules without what is compiled for this process."""

@@ -31,6 +31,9 @@ class World:
         self.config = config
         self._recorded = False
 
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise ArgumentError("a world is a view of its simulation: copy or pickle the simulation")
+
     @cached_property
     def layouts(self) -> tuple[SpeciesLayout, ...]:
         """What the numbers of the agents of each species mean, in the order of the config."""
