@@ -153,4 +153,6 @@ HEDON_FN float wrap_angle(float angle) {
   return angle < 0.0f ? 0.0f : angle;
 }
 
+HEDON_FN bool is_finite(double value) { return value - value == 0.0; }
+
 }  // namespace hedon

@@ -58,7 +58,7 @@ inline constexpr StatusText STATUS_TEXT[] = {
     {"ids_inconsistent", "The living are not in the order of their ids, or an id was not given to any agent.", REPEAT},
     {"counts_inconsistent", "Counts of births, deaths or foods do not agree with the world.", REPEAT},
     {"ledger_open", "The energy of the agents differs from the sum in the ledger.", REPEAT},
-    {"rule_not_finite", "A rule paid an agent, or kept for it, a number that is not finite.",
+    {"rule_not_finite", "A rule paid an agent, or kept for it, a number that is not finite; pay must be below 3.4e38.",
      "Check the species' reward.rule for this agent: an exception, a division by 0, or a memory that grows without "
      "end."},
     {"rule_no_chance", "A rule gave a chance of death or birth that is not between 0 and 1.",
@@ -75,7 +75,7 @@ struct Fault {
   int32_t agent_id;
   int64_t step;
   double value;
-  int32_t other_id;  ///< the other agent of a pair
+  int32_t other_id;  ///< the other agent of a pair; of a fault of a rule, its species · `RULE_USES` + its use
   int32_t reserved;
 
   HEDON_FIELDS(Fault, status, agent_id, step, value, other_id, reserved)

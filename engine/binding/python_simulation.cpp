@@ -233,19 +233,20 @@ void PythonSimulation::set_rule(NamedRule named, Rule rule) {
   rules_.push_back(std::move(named));
 }
 
-/// The agent of a fault, and where a rule is at fault, the rules of its species that can be meant.
-std::string PythonSimulation::about_agent(const World& world, const Fault& fault) const {
-  std::string text = ", agent " + std::to_string(fault.agent_id);
-  const bool paid = fault.status == Status::rule_not_finite;
-  if (!paid && fault.status != Status::rule_no_chance && fault.status != Status::rule_wrote) return text;
-  for (int32_t i = 0; i < world.head().living_count; ++i) {
-    const int32_t slot = world.state.living[i];
-    if (world.state.life[slot].agent_id != fault.agent_id) continue;
-    for (const NamedRule& each : rules_) {
-      if (each.species != world.shape->species_of(slot) || (each.use == RuleUse::reward) != paid) continue;
-      text += ", " + each.name;
-    }
-  }
+/// The agents of a fault, or the agent and the rule that is at fault.
+std::string PythonSimulation::about_agents(const Fault& fault) const {
+  std::string text = fault.agent_id >= 0 ? ", agent " + std::to_string(fault.agent_id) : "";
+  const bool ruled = fault.status == Status::rule_not_finite || fault.status == Status::rule_no_chance ||
+                     fault.status == Status::rule_wrote;
+  if (!ruled) return fault.other_id >= 0 ? text + ", with agent " + std::to_string(fault.other_id) : text;
+  for (const NamedRule& each : rules_)
+    if (each.species * RULE_USES + static_cast<int32_t>(each.use) == fault.other_id) text += ", " + each.name;
+  return text;
+}
+
+static std::string shown(double value) {
+  char text[40];
+  snprintf(text, sizeof text, "%g", value);
   return text;
 }
 
@@ -261,9 +262,7 @@ void PythonSimulation::raise_faults() {
   const Fault& fault = simulation.numbers(first).fault();
   const StatusText& text = STATUS_TEXT[static_cast<int>(fault.status)];
   std::string message = std::string(text.name) + ": " + text.sentence + " World " + std::to_string(first) + ", step " +
-                        std::to_string(fault.step) + ", value " + std::to_string(fault.value);
-  if (fault.agent_id >= 0) message += about_agent(simulation.numbers(first), fault);
-  if (fault.other_id >= 0) message += ", with agent " + std::to_string(fault.other_id);
+                        std::to_string(fault.step) + ", value " + shown(fault.value) + about_agents(fault);
   message += ", windows completed: " + std::to_string(fault.step / simulation.shape().steps);
   throw EngineError(message + ". " + text.remedy);
 }

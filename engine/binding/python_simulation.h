@@ -90,14 +90,14 @@ class PythonSimulation {
 
  private:
   void raise_faults();
-  std::string about_agent(const World& world, const Fault& fault) const;
+  std::string about_agents(const Fault& fault) const;
   void need_working();
 
   std::unique_ptr<Simulation> simulation_;
   std::atomic<bool> running_{false};
   int64_t id_ = 0;
   std::vector<NamedRule> rules_;
-  uint32_t turn_;  ///< counts calls of `step_batch`, from a number of its own, so that no other's states are taken
+  uint32_t turn_;      ///< counts calls of `step_batch`, from a number of its own, so that no other's states are taken
   int64_t piece_ = 1;  ///< steps between two checks for Ctrl-C
 };
 

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/device.h"
+#include "base/math.h"
 #include "base/vec2.h"
 #include "physics/grid.h"
 #include "world/world.h"
@@ -22,8 +23,6 @@ HEDON_FN bool all_finite(const float* values, int64_t count) {
   }
   return wild == 0;
 }
-
-HEDON_FN bool is_finite(double value) { return value - value == 0.0; }
 
 /// Every slot is either used by one of the living or free, and its flag says which.
 HEDON_FN void audit_slots(const World& world) {

@@ -83,7 +83,7 @@ HEDON_FN void decide_by_rule(World& world, int32_t s, RuleUse use) {
   const int32_t count = ask_all(world, s, use);
   for (int32_t i = 0; i < count; ++i) {
     const int32_t slot = world.scratch.asked[i];
-    const double chance = answered_chance(world, s, i);
+    const double chance = answered_chance(world, s, use, i);
     if (use == RuleUse::hazard) {
       decide_death(world, slot, chance);
     } else {

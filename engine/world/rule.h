@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/device.h"
+#include "base/math.h"
 #include "world/chance.h"
 #include "world/channel.h"
 #include "world/world.h"
@@ -69,6 +70,11 @@ HEDON_FN const double* memory_after(const World& world, int32_t s, int32_t i) {
   return &world.scratch.record[int64_t{i + 1} * species.record - species.config.reward.memory];
 }
 
+/// A rule of a species has given the agent in `slot` what it cannot be given.
+HEDON_FN void fail_rule(const World& world, int32_t s, RuleUse use, Status status, int32_t slot, double value) {
+  world.fail(status, world.state.life[slot].agent_id, value, s * RULE_USES + static_cast<int32_t>(use));
+}
+
 /// Pays the agents of a species by its rule.
 HEDON_FN void pay_by_rule(World& world, int32_t s) {
   const WorldState& state = world.state;
@@ -76,26 +82,29 @@ HEDON_FN void pay_by_rule(World& world, int32_t s) {
   const int32_t count = ask_all(world, s, RuleUse::reward);
   for (int32_t i = 0; i < count; ++i) {
     const int32_t slot = world.scratch.asked[i];
-    const double paid = world.scratch.answer[i];
     const double* kept = memory_after(world, s, i);
-    double sum = paid;
-    for (int32_t m = 0; m < memory; ++m) sum += state.memory[int64_t{slot} * world.shape->memory + m] = kept[m];
-    if (!(sum - sum == 0.0)) return world.fail(Status::rule_not_finite, state.life[slot].agent_id, sum);
+    for (int32_t m = 0; m < memory; ++m) {
+      state.memory[int64_t{slot} * world.shape->memory + m] = kept[m];
+      if (!is_finite(kept[m])) return fail_rule(world, s, RuleUse::reward, Status::rule_not_finite, slot, kept[m]);
+    }
+    const float paid = static_cast<float>(world.scratch.answer[i]);  // infinite where the answer is beyond a float
+    if (!is_finite(static_cast<double>(paid)))
+      return fail_rule(world, s, RuleUse::reward, Status::rule_not_finite, slot, world.scratch.answer[i]);
     const int64_t row = slot * int64_t{world.shape->rollout} + world.kept(slot, world.window_step());
-    state.reward[row] = static_cast<float>(paid);
-    state.life[slot].reward += static_cast<double>(static_cast<float>(paid));
+    state.reward[row] = paid;
+    state.life[slot].reward += static_cast<double>(paid);
   }
 }
 
 /// The chance that a rule gave as its answer `i`, which must be one; a rule of chances leaves memories as they are.
-HEDON_FN double answered_chance(const World& world, int32_t s, int32_t i) {
-  const int32_t slot = world.scratch.asked[i], id = world.state.life[slot].agent_id;
+HEDON_FN double answered_chance(const World& world, int32_t s, RuleUse use, int32_t i) {
+  const int32_t slot = world.scratch.asked[i];
   const double chance = world.scratch.answer[i];
-  if (!(chance >= 0.0 && chance <= 1.0)) world.fail(Status::rule_no_chance, id, chance);
+  if (!(chance >= 0.0 && chance <= 1.0)) fail_rule(world, s, use, Status::rule_no_chance, slot, chance);
   const double* kept = memory_after(world, s, i);
   for (int32_t m = 0; m < world.shape->of[s].config.reward.memory; ++m) {
     if (kept[m] != world.state.memory[int64_t{slot} * world.shape->memory + m])
-      world.fail(Status::rule_wrote, id, kept[m]);
+      fail_rule(world, s, use, Status::rule_wrote, slot, kept[m]);
   }
   return chance;
 }
@@ -105,7 +114,7 @@ HEDON_FN double ask_chance(World& world, int32_t slot, RuleUse use) {
   const int32_t s = world.shape->species_of(slot);
   world.scratch.asked[0] = slot;
   ask(world, s, use, 1);
-  return answered_chance(world, s, 0);
+  return answered_chance(world, s, use, 0);
 }
 
 }  // namespace hedon

@@ -31,6 +31,13 @@ def homeostatic(agent):
 def bad(agent):
     return 1.0 / (agent.age - 3.0)
 
+def huge(agent):
+    return 1e39 if agent.age > 2.0 else 3e38
+
+def stuffed(agent):
+    agent.memory_1 = agent.memory_2 = 1.7e308
+    return 1.0
+
 def raising(agent):
     if agent.age > 2.0:
         raise ValueError("old")
@@ -196,7 +203,7 @@ def test_a_rule_that_cannot_be_used_is_named(file, name, says):
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-@pytest.mark.parametrize(("name", "value"), [("bad", "inf"), ("raising", "-?nan")])
+@pytest.mark.parametrize(("name", "value"), [("bad", "inf"), ("raising", "-?nan"), ("huge", r"1e\+39")])
 def test_a_rule_that_fails_stops_the_world(file, name, value):
     simulation = paid(file, name, *QUICK, *DEATHLESS)
     with pytest.raises(
@@ -204,6 +211,12 @@ def test_a_rule_that_fails_stops_the_world(file, name, value):
         match=rf"rule_not_finite: .* step 2, value {value}, agent 0, reward.rule of agent \(my_rules.py:{name}\)",
     ):
         simulation.run(10)
+
+
+def test_memories_may_be_large(file):
+    simulation = paid(file, "stuffed", *QUICK, *DEATHLESS, memory=2)
+    simulation.run(10)
+    assert simulation.worlds[0].step == 10
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
