@@ -1,10 +1,13 @@
 """Where what a command prints cannot be written, it says so in one line, and ends with exit code 2."""
 
+import json
 import os
 import subprocess
 import sys
 
 import pytest
+
+from hedon.check import check_run
 
 COMMANDS = [
     ("presets",),
@@ -35,10 +38,32 @@ def test_a_full_disk_behind_what_is_printed_is_one_line(arguments, tmp_path):
     assert answer == (2, "hedon: cannot write what it prints: No space left on device\n")
 
 
-def test_a_reader_that_has_enough_is_no_fault(tmp_path):
+@pytest.mark.parametrize("unbuffered", [False, True])
+@pytest.mark.parametrize("arguments", COMMANDS[:-1], ids=" ".join)
+def test_a_reader_that_has_enough_is_no_fault(arguments, unbuffered, tmp_path):
     reading, writing = os.pipe()
     os.close(reading)
     try:
-        assert call(("config", "show", "baseline"), writing, tmp_path, unbuffered=False) == (1, "")
+        assert call(arguments, writing, tmp_path / "out", unbuffered=unbuffered) == (141, "")
     finally:
         os.close(writing)
+
+
+@pytest.mark.parametrize("command", ["run", "resume"])
+def test_a_run_whose_reader_has_enough_is_interrupted(command, tmp_path):
+    folder = tmp_path / "out"
+    begin = ("run", "small", "--steps", "64", "--out", "{out}", "--threads", "1", "--no-report")
+    if command == "resume":
+        assert call(begin, subprocess.DEVNULL, folder, unbuffered=False)[0] == 0
+    long = ("--steps", "200000", "--threads", "1", "--no-report")
+    words = ("run", "small", "--out", "{out}", *long) if command == "run" else ("resume", "{out}", *long)
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        code, said = call(words, writing, folder, unbuffered=True)
+    finally:
+        os.close(writing)
+    assert (code, said) == (141, "hedon: interrupted: nobody reads any more what it prints\n")
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert manifest["status"] == "interrupted"
+    assert not check_run(folder).findings

@@ -178,7 +178,8 @@ def test_what_is_no_chance_stops_the_world(file, use, name, says):
 
 def test_only_a_reward_writes_memories(file):
     simulation = living(file, *QUICK, "reward.memory=2", reward="noting", hazard="writing")
-    with pytest.raises(EngineError, match=r"rule_wrote: .* value 1, agent 0, hazard\.rule of agent \(my_rules\.py:writing\), windows"):
+    where = r"agent 0, hazard\.rule of agent \(my_rules\.py:writing\), windows"
+    with pytest.raises(EngineError, match=rf"rule_wrote: .* value 1, {where}"):
         simulation.run(10)
 
 

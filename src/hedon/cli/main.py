@@ -17,7 +17,7 @@ from hedon.cli.contrast import contrast
 from hedon.cli.diff import diff
 from hedon.cli.export import export
 from hedon.cli.forecast import forecast
-from hedon.cli.output import OutputError, give_up, guard
+from hedon.cli.output import OutputError, give_up, guard, pipe_closed
 from hedon.cli.power import power
 from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
@@ -33,6 +33,7 @@ NO_MEMORY = (
     "there is no more memory: lower population.capacity, world.rollout_steps or the number of seeds, "
     "or check the limit `ulimit -v`"
 )
+_CLOSED = 141  # exit code of a command whose output nobody reads to its end, as shells have it: 128 plus SIGPIPE
 ADDRESSES = 2_000_000_000
 """Most memory that the libraries of a command reserve, before any world [byte]. Some abort if they get none."""
 
@@ -123,6 +124,12 @@ def main(command: typer.Typer = app) -> None:
             command()
         finally:
             sys.stdout.flush()  # here, since at its end Python would print a traceback of its own
+    except SystemExit as ending:
+        if not pipe_closed() or ending.code not in (None, 0, _CLOSED):
+            raise
+        if ending.code == _CLOSED:  # a run has ended early by that
+            typer.echo("hedon: interrupted: nobody reads any more what it prints", err=True)
+        sys.exit(_CLOSED)
     except HedonError as error:
         fail(str(error))
     except OSError as error:

@@ -1,4 +1,4 @@
-"""What a command prints, where it cannot be printed: a full disk, a closed terminal."""
+"""What a command prints, where it cannot be printed: a full disk, a closed terminal or pipe."""
 
 import errno
 import io
@@ -17,6 +17,7 @@ class OutputError(HedonError):
 class _Guarded(io.TextIOWrapper):
     """A stream whose first failure is its last word: a second try, if only to flush, raises it too."""
 
+    pipe_closed = False
     _failure: OutputError | None = None
 
     def write(self, text: str, /) -> int:
@@ -31,16 +32,34 @@ class _Guarded(io.TextIOWrapper):
         try:
             return act(*given)
         except OSError as error:
-            if error.errno == errno.EPIPE:  # its reader has what it wants, as `head` does: no fault
-                raise
+            if error.errno == errno.EPIPE:  # its reader has what it wants, as `head` does
+                self._close_pipe()
+                return act(*given)
             self._failure = OutputError(f"cannot write what it prints: {error.strerror}")
             raise self._failure from error
+
+    def _close_pipe(self) -> None:
+        """All that is still written goes nowhere, and what runs ends as by a signal."""
+        from hedon.experiment.interrupt import PIPE, note
+
+        if not pipe_closed():
+            note(PIPE)
+        self.pipe_closed = True
+        self._go_nowhere()
+
+    def _go_nowhere(self) -> None:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())
 
     def give_up(self) -> None:
         """Lets all that is still written go nowhere, or Python would complain at its end."""
         if self._failure is not None:
             self._failure = None
-            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())
+            self._go_nowhere()
+
+
+def pipe_closed() -> bool:
+    """Whether nobody reads any more what this command prints."""
+    return any(isinstance(stream, _Guarded) and stream.pipe_closed for stream in (sys.stdout, sys.stderr))
 
 
 def give_up() -> None:

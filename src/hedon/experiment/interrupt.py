@@ -1,14 +1,17 @@
-"""Counts Ctrl-C, SIGTERM and SIGHUP, instead of raising an exception anywhere: the host loop checks the count."""
+"""Counts signals and closed pipes, instead of raising an exception anywhere: the host loop checks the count."""
 
 import signal
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from typing import Any
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else []))
+PIPE = 13
+"""The number of the signal SIGPIPE, which Windows does not know. Python ignores it: a write tells of a closed pipe."""
 _noted: list[int] = []
 """The signals that this process has counted, so that a command can end with the exit code of the last one."""
+_counting: list["Interrupts"] = []
+"""Those who count now."""
 
 
 @dataclass(slots=True)
@@ -20,22 +23,26 @@ class Interrupts:
 
 @contextmanager
 def count_interrupts() -> Iterator[Interrupts]:
-    """Counts the signals that ask the run to end, until the block ends."""
-    seen = Interrupts()
-
-    def note(number: int, frame: Any) -> None:
-        seen.count += 1
-        _noted.append(number)
-
+    """Counts the signals that ask the run to end, until the block ends. A pipe that was closed before counts too."""
+    seen = Interrupts(_noted.count(PIPE))
     with ExitStack() as stack:
+        _counting.append(seen)
+        stack.callback(_counting.remove, seen)
         try:
             for number in SIGNALS:
                 if number != signal.SIGINT and signal.getsignal(number) is signal.SIG_IGN:
                     continue  # nohup ignores SIGHUP, and what it starts must live on
-                stack.callback(signal.signal, number, signal.signal(number, note))
+                stack.callback(signal.signal, number, signal.signal(number, lambda number, frame: note(number)))
         except ValueError:  # not in the main thread, where Python handles no signals
             pass
         yield seen
+
+
+def note(number: int) -> None:
+    """Counts a signal, or what amounts to one."""
+    _noted.append(number)
+    for seen in _counting:
+        seen.count += 1
 
 
 def interrupted_code() -> int:
