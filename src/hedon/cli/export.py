@@ -53,7 +53,15 @@ def export(
     """
     from hedon.cli.display.step import StepDisplay
     from hedon.export.indices import index_table
-    from hedon.export.phylogeny import alife_table, last_step, newick, pedigree, picture
+    from hedon.export.phylogeny import (
+        TWO_PARENTS,
+        alife_table,
+        has_two_parents,
+        last_step,
+        newick,
+        pedigree,
+        picture,
+    )
     from hedon.export.table import TableFormat, table_of, write_new, write_table
     from hedon.record.reader import open_run
 
@@ -81,6 +89,8 @@ def export(
             if what == "indices":
                 write_table(index_table(agents, now, points).lazy(), cast(TableFormat, chosen), target)
             elif chosen == "alife":
+                if has_two_parents(agents):
+                    typer.echo(f"hedon: note: {TWO_PARENTS}", err=True)
                 write_table(alife_table(agents, opened.weight_names).lazy(), "csv", target)
             else:
                 content = picture(agents, now, opened.weight_names, color) if chosen == "png" else newick(agents, now)

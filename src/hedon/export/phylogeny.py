@@ -13,6 +13,11 @@ from hedon.figure.tree import draw_tree
 from hedon.record.reader import Run
 from hedon.text import brief
 
+TWO_PARENTS = (
+    "children of this run have two parents, and ancestor_list names both: programs that expect a tree, such as the "
+    "converters of the ALife standard, refuse it"
+)
+
 
 class Subtree(NamedTuple):
     """A part of a tree of the living: its text, and the step of its uppermost fork or tip."""
@@ -29,6 +34,9 @@ def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> p
         seed: of the world; needed where there are several.
         species: only these; by default all, whose trees stand side by side.
 
+    Returns:
+        The table `agents`; of a branch, those who lived when it began are roots unless their parents did too.
+
     Raises:
         ExportError: there is no such world or species, or it is not said which world; or ancestors are missing.
         RecordError: a part of the table is damaged.
@@ -44,10 +52,20 @@ def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> p
             there = ", ".join(run.columns.species)
             raise ExportError(f"--species {brief(species)}: there is no such species (there are {there})")
         agents = agents.filter(pl.col("species") == species) if run.columns.several else agents
+    if run.manifest.parent is not None:
+        agents = _rooted(agents, run.manifest.parent.step)
     gaps = genealogy(agents).gaps
     if gaps:
         raise ExportError(f"the parents of {gaps} agents are not recorded: a part of the run is missing")
     return agents
+
+
+def _rooted(agents: pl.DataFrame, begin: int) -> pl.DataFrame:
+    """The agents of a branch without parents who had died when it began [step]."""
+    known = agents["agent_id"].implode()
+    roots = (pl.col("birth_step") <= begin) & ~pl.col("parent_id").is_in(known)
+    lost = [name for name in ("parent_id", "mate_id") if name in agents.columns]
+    return agents.with_columns(pl.when(~roots).then(pl.col(name)).alias(name) for name in lost)
 
 
 def last_step(run: Run, agents: pl.DataFrame) -> int:
@@ -98,9 +116,11 @@ def newick(agents: pl.DataFrame, now: int) -> bytes:
         now: the last step.
 
     Raises:
-        ExportError: children have two parents, so that there is no tree.
+        ExportError: children have two parents, so that there is no tree; or nobody lives.
     """
     tree = require_tree(agents)
+    if not tree.alive.any():
+        raise ExportError("nobody lives at the end, so there is no tree of the living; --format alife has all agents")
     ids = agents["agent_id"].to_numpy()
     kept = ancestry(tree, np.flatnonzero(tree.alive))
     found: dict[int, Subtree] = {}
@@ -136,13 +156,18 @@ def picture(agents: pl.DataFrame, now: int, genes: tuple[str, ...], gene: str | 
     return png_bytes(draw_tree(tree, weight, name, now))
 
 
+def has_two_parents(agents: pl.DataFrame) -> bool:
+    """Whether some children of these have two parents, so that their pedigree is no tree."""
+    return "mate_id" in agents.columns and agents["mate_id"].is_not_null().any()
+
+
 def require_tree(agents: pl.DataFrame) -> Genealogy:
     """The pedigree of agents who have one parent each.
 
     Raises:
         ExportError: children have two parents, so that there is no tree.
     """
-    if "mate_id" in agents.columns and agents["mate_id"].is_not_null().any():
+    if has_two_parents(agents):
         raise ExportError("children of this run have two parents: there is no tree; --format alife has both parents")
     return genealogy(agents)
 

@@ -12,7 +12,12 @@ from synthetic_run import write_run
 from typer.testing import CliRunner
 
 from hedon.cli.export import export
-from hedon.export.phylogeny import alife_table, last_step, newick, pedigree
+from hedon.config import load_config
+from hedon.experiment.branch import branch
+from hedon.experiment.plan import RunPlan
+from hedon.experiment.run import run
+from hedon.export.phylogeny import alife_table, has_two_parents, last_step, newick, pedigree
+from hedon.export.table import ExportError
 from hedon.record.reader import open_run
 
 APP = typer.Typer()
@@ -127,3 +132,43 @@ def test_the_time_of_a_common_ancestor_is_that_of_a_birth(folder: Path) -> None:
     tree = dendropy.TreeList.get(data=newick(agents, now).decode(), schema="newick")[0]
     tree.calc_node_ages()
     assert {now - round(node.age) for node in tree.internal_nodes()} <= births
+
+
+def test_without_survivors_there_is_no_tree() -> None:
+    gone = family().with_columns(death_step=pl.col("death_step").fill_null(60))
+    with pytest.raises(ExportError, match="nobody lives at the end, so there is no tree of the living"):
+        newick(gone, now=100)
+    assert alife_table(gone, ()).height == 6
+
+
+def test_two_parents_are_told() -> None:
+    pairs = family().with_columns(mate_id=pl.when(pl.col("agent_id") == 4).then(1))
+    assert has_two_parents(pairs)
+    assert not has_two_parents(family().with_columns(mate_id=pl.lit(None)))
+    assert alife_table(pairs, ())["ancestor_list"].to_list()[4] == "[2,1]"
+
+
+@pytest.fixture(scope="module")
+def branched(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A branch of a lively world, in which founders have died and children were born before it began."""
+    place = tmp_path_factory.mktemp("branched")
+    lively = ("birth.kappa=0.05", "hazard.alpha_age=0.01", "learning.update_epochs=1", "world.rollout_steps=256")
+    plan = RunPlan(load_config("small", overrides=lively), seeds=(1,), steps=1024, out=place / "whole")
+    run(plan)
+    branch(plan.out, place / "branch", steps=1536)
+    return place / "branch"
+
+
+@pytest.mark.parametrize("chosen", ["alife", "newick", "png"])
+def test_the_pedigree_of_a_branch_begins_with_those_who_lived_then(chosen: str, branched: Path, tmp_path: Path) -> None:
+    out = tmp_path / f"tree.{chosen}"
+    assert invoke("phylogeny", str(branched), "--format", chosen, "--out", str(out)) == f"wrote {out}\n"
+    agents = pedigree(open_run(branched), 1)
+    roots = agents.filter(pl.col("parent_id").is_null())
+    begin = open_run(branched).manifest.parent.step  # pyright: ignore
+    assert roots["birth_step"].max() <= begin  # pyright: ignore
+    assert roots.filter(pl.col("birth_step") > 0).height > 0, "some were born before it began"
+    if chosen == "alife":
+        ids = set(map(str, agents["agent_id"]))
+        named = pl.read_csv(out, infer_schema_length=None)["ancestor_list"].str.strip_chars("[]").to_list()
+        assert set(named) - {"NONE"} <= ids
