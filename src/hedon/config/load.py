@@ -95,11 +95,12 @@ def _config_of(tables: Table, path: Path | None, fidelity: str | None = None, te
     for name in [each for table in changes for each in table if each in ("preset", "fidelity", "complete")]:
         other = "--fidelity" if name == "fidelity" else "the preset or file itself"
         problems.append(Problem(name, f"is not a setting: give it with {other}"))
-    below = _layers_below(own, fidelity, problems)
-    if problems:
-        raise ConfigError(origin, problems)
+    unknown: list[Problem] = []
+    below = _layers_below(own, fidelity, unknown)
+    if unknown:  # without a preset nothing else can be judged
+        raise ConfigError(origin, [*problems, *unknown])
     name = {"name": origin if path is None else _name_of(path)}
-    return _from_layers([name, *below], [own, *changes], f"{origin}, with changes" if changes else origin)
+    return _from_layers([name, *below], [own, *changes], f"{origin}, with changes" if changes else origin, problems)
 
 
 def load_config_text(text: str, path: Path) -> Config:
@@ -235,11 +236,12 @@ def _mistyped_species(below: Table, overrides: list[Table]) -> list[Problem]:
     ]
 
 
-def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
-    """The config of layers of tables, the lowest first; `above` are those of the user: a file, then overrides."""
-    problems = [problem for layer in above for problem in renamed(layer)]
-    if problems:
-        raise ConfigError(origin, problems)
+def _from_layers(below: list[Table], above: list[Table], origin: str, found: Sequence[Problem] = ()) -> Config:
+    """The config of layers of tables, the lowest first; `above` are those of the user: a file, then overrides.
+
+    Problems that were found before are told with the others.
+    """
+    found = [*found, *(problem for layer in above for problem in renamed(layer))]
     complete = above[0].get("complete") is True
     above = [with_defaults(above[0]) if complete else above[0], *above[1:]]
     merged = stack([*below, *above])
@@ -247,9 +249,7 @@ def _from_layers(below: list[Table], above: list[Table], origin: str) -> Config:
     problems = [*mistyped, *_schema_problems(merged, complete), *settle_food(merged), *settle_species(merged, above)]
     problems += settle_stores_and_queries(merged)
     settle_genes(merged)
-    if problems:
-        raise ConfigError(origin, folded(problems, _species_of(merged)))
-    config = build(Config, merged, origin)
+    config = build(Config, merged, origin, [*found, *folded(problems, _species_of(merged))])
     if complete:
         _require_complete(config, merged, origin)
     return config

@@ -18,26 +18,29 @@ T = TypeVar("T")
 S = TypeVar("S", bound=Settings)
 
 
-def build(root: type[S], tables: Mapping[str, Any], origin: str) -> S:
+def build(root: type[S], tables: Mapping[str, Any], origin: str, found: Sequence[Problem] = ()) -> S:
     """Builds a config from nested tables; settings that are not given have their defaults.
 
     Args:
         root: `Config`.
         tables: Sections and settings by name, as TOML gives them.
         origin: The name of the tables in errors.
+        found: Problems that are known already; what else is wrong at their places is not told.
 
     Raises:
-        ConfigError: A type, a range or a name is wrong, or settings contradict one another.
+        ConfigError: A type, a range or a name is wrong, or settings contradict one another; or something was found.
     """
     require_plain(tables, origin)
-    problems: list[Problem] = []
-    config = _section(root, tables, "", problems)
-    wrong = [_parts(problem.path) for problem in problems]
+    more: list[Problem] = []
+    config = _section(root, tables, "", more)
+    known = [_parts(problem.path) for problem in found]
+    problems = [each for each in more if not _is_at(_parts(each.path), known)]
+    wrong = [*known, *(_parts(problem.path) for problem in problems)]
     # What is wrong by itself has its default now; contradictions are looked for among the rest.
-    rest = (each for each in contradictions(config) if not any(_overlap(_parts(each.path), path) for path in wrong))
+    rest = (each for each in contradictions(config) if not _is_at(_parts(each.path), wrong))
     problems.extend(rest)
-    if problems:
-        raise ConfigError(origin, folded(problems, tuple(config.species)))
+    if found or problems:
+        raise ConfigError(origin, [*found, *folded(problems, tuple(config.species))])
     return config
 
 
@@ -233,6 +236,12 @@ def _places(section: type, name: str, path: str = "") -> Iterator[str]:
 
 def _parts(path: str) -> list[str]:
     return re.split(r"[.\[]", path)
+
+
+def _is_at(path: list[str], known: Iterable[list[str]]) -> bool:
+    """Whether one of some paths leads here, or to the default of a file for a species."""
+    default = path[2:] if path[0] == "species" and len(path) > 2 else path
+    return any(_overlap(path, each) or _overlap(default, each) for each in known)
 
 
 def _overlap(path: list[str], other: list[str]) -> bool:

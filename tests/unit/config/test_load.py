@@ -272,3 +272,41 @@ def test_a_config_is_modified_where_a_setting_differs_from_its_preset(write: Wri
     assert is_modified(load_config("poison", overrides=["energy.initial=7"]))
     assert is_modified(load_config(write("[food.mushroom]\ngives.energy = 3.0\n")))
     assert is_modified(dataclasses.replace(Config(), preset="mine"))
+
+
+def test_all_problems_of_a_file_and_its_overrides_are_told_at_once(tmp_path):
+    """What is found at different times: in names, foods, stores, settings, between settings, and in overrides."""
+    path = tmp_path / "many.toml"
+    path.write_text(
+        """
+        [energy]
+        capacity = -3
+        starvation = "die"
+        [food.bad]
+        growth_rate = 1.0
+        [food.normal]
+        growth_rate = "x"
+        [species.a.store.fat]
+        initial = 2
+        [species.a.birth]
+        logit_offse = 1
+        [learning]
+        minibatch_size = 7
+        """
+    )
+    with pytest.raises(ConfigError) as caught:
+        load_config(path, overrides=["nonsense", "hazard.kapp=1"])
+    places = [problem.path for problem in caught.value.problems]
+    assert sorted(places) == sorted(
+        [
+            "'nonsense'",
+            "energy.starvation",
+            "food.bad",
+            "store.fat",
+            "energy.capacity",
+            "food.normal.growth_rate",
+            "birth.logit_offse",
+            "hazard.kapp",
+            "learning.minibatch_size",
+        ]
+    )
