@@ -166,7 +166,14 @@ def describe_fidelity(name: str) -> str:
 
 
 def override_texts(overrides: Iterable[str]) -> list[str]:
-    """The overrides as a list, also of a single one. ArgumentError: they are no texts."""
+    """The overrides as a list.
+
+    Args:
+        overrides: Texts, or a single one.
+
+    Raises:
+        ArgumentError: They are something else.
+    """
     if not isinstance(overrides, Iterable):
         raise ArgumentError(f"overrides = {brief(repr(overrides))}: must be a list of texts such as energy.initial=20")
     texts = [overrides] if isinstance(overrides, str) else list(overrides)

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
+from hedon.copied import Copied
 from hedon.env.argument import options_of
-from hedon.env.copied import Copied
 from hedon.env.group import Form
 from hedon.env.make import make
 from hedon.env.vector import RENDER_MODES

@@ -83,7 +83,14 @@ def with_callers(config: Config, names: Sequence[str]) -> Config:
 
 
 def options_of(options: Any) -> dict[str, Any]:
-    """What a caller gave to `reset` besides the seed. ArgumentError: it is no dictionary."""
+    """What a caller gave to `reset` besides the seed.
+
+    Args:
+        options: A dictionary, or None.
+
+    Raises:
+        ArgumentError: It is something else.
+    """
     if not isinstance(options, Mapping | None):
         raise ArgumentError(f"options = {brief(repr(options))}: must be a dict, or None")
     return dict(options or {})

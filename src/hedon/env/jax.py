@@ -23,8 +23,8 @@ from jax import numpy as jnp
 from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
+from hedon.copied import Copied
 from hedon.env.argument import chosen, driven, loaded, with_callers
-from hedon.env.copied import Copied
 from hedon.env.group import ACTIONS, FORMS, NOBODY, Form, Group
 from hedon.env.space import Spaces
 from hedon.error import ArgumentError, HedonError

@@ -10,8 +10,8 @@ from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
+from hedon.copied import Copied
 from hedon.env.argument import options_of
-from hedon.env.copied import Copied
 from hedon.env.group import ACTIONS, Form, Group
 from hedon.env.make import make
 from hedon.env.vector import RENDER_MODES, VectorEnv

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from stable_baselines3.common.vec_env import VecEnv  # pyright: ignore[reportMissingImports]
 
+from hedon.copied import Copied
 from hedon.env.argument import RESET_MASK
-from hedon.env.copied import Copied
 from hedon.env.group import NOBODY, Group
 from hedon.env.vector import VectorEnv
 from hedon.error import ArgumentError

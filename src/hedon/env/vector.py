@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
+from hedon.copied import Cloned
 from hedon.env.argument import chosen, driven, reset_mask, with_callers, world_seeds
 from hedon.env.group import FORMS, Form, Group, act
 from hedon.env.keep import arrays_in, text_of
@@ -28,7 +29,7 @@ RENDER_MODES = ("rgb_array", "human")
 RECORDED = "worlds that are recorded only go on: make others, with another folder or without records"
 
 
-class VectorEnv:
+class VectorEnv(Cloned):
     """Worlds whose agents, all or those of some species, are driven by the caller; `hedon.make` makes them.
 
     What `reset` and `step` return, and what the attributes below hold, are the same arrays each time, of shape (worlds,
@@ -127,7 +128,7 @@ class VectorEnv:
         self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since it began
         self._eye: Any = None
         self._record: Any = None  # also of a copy: it has no records
-        self._own = {*vars(self), "_own", "_told", "spaces"}
+        self._keep_own("_told", "spaces")
 
     @property
     def observations(self) -> Any:
@@ -332,41 +333,26 @@ class VectorEnv:
         """A copy with worlds and arrays of its own, which goes on as this one does; it is not recorded."""
         made = type(self).__new__(type(self))
         made._go_on(self.simulation._fresh_one(), **self._given(), saved=self.save())
-        vars(made).update(copy.deepcopy(self._added()))
         return made
 
-    def __copy__(self) -> Self:
-        return self.clone()
-
-    def __deepcopy__(self, memo: Any) -> Self:
-        return self.clone()
-
     def __getstate__(self) -> dict[str, Any]:
-        given = {"saved": self.save(), "worlds": self.simulation._arguments(), "added": self._added()}
-        return self._given() | given
+        return self._given() | {"saved": self.save(), "worlds": self.simulation._arguments()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         simulation = Simulation.__new__(Simulation)
         simulation.__setstate__(state.pop("worlds"))
-        added = state.pop("added")
         self._go_on(simulation, **state)
-        vars(self).update(added)
-
-    def _added(self) -> dict[str, Any]:
-        """Attributes of a subclass, or of a user, which copies take over."""
-        return {name: value for name, value in vars(self).items() if name not in self._own}
 
     def _given(self) -> dict[str, Any]:
         given = {"repeat": self.repeat, "max_steps": self.max_steps, "render_mode": self.render_mode}
-        return {**given, "about": self._about()}
+        return {**given, "about": self._about(), "added": self._added()}
 
-    def _go_on(
-        self, simulation: Simulation, repeat: int, max_steps: int, render_mode: str | None, about: Any, saved: bytes
-    ) -> None:
+    def _go_on(self, simulation: Simulation, about: Any, saved: bytes, added: dict[str, Any], **given: Any) -> None:
         """Makes a copy of what another one was."""
-        self.repeat, self.max_steps, self.render_mode = repeat, max_steps, render_mode
+        vars(self).update(given)
         self._made(simulation, about["species"], about["actions"])
         self.restore(saved)
+        vars(self).update(copy.deepcopy(added))
 
     def _about(self) -> dict[str, Any]:
         """What two environments must share to go on from one another's states."""

@@ -8,7 +8,7 @@ namespace ffi = xla::ffi;
 
 using Step = void (*)(const int64_t* call, void* const* in, void* const* out, int64_t rows, char* complaint, int64_t room);
 
-/// What each buffer must hold: numbers of this type, so many in a row.
+/// What each buffer must hold: rows of `width` numbers of a type.
 struct Expected {
   const char* name;
   ffi::DataType type;

@@ -16,6 +16,7 @@ from hedon.config.config import Config
 from hedon.config.dump import digest
 from hedon.config.engine import EngineInput, engine_input
 from hedon.config.layout import layouts
+from hedon.copied import Cloned
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_THREADS, integer, seed_list
 from hedon.experiment.device import device_library
@@ -39,7 +40,7 @@ MARKS = {"hedon": "by another version of hedon", "config": "with another config"
 """What saved worlds share with those that go on from them, and how it is said where they do not."""
 
 
-class Simulation:
+class Simulation(Cloned):
     """Worlds of one config, advanced together. A seed gives the same world, whatever other worlds run with it.
 
     Example:
@@ -111,7 +112,7 @@ class Simulation:
             name = f"{rule.use}.rule of {rule.species} ({rule.source.file}:{rule.source.name})"
             self.engine.set_rule(species, rule.use, rule.compiled.address, name)
         self.worlds = tuple(World(self.engine, i, self.config) for i in range(len(seeds)))
-        self._own = {*vars(self), "_own", "_mark"}  # what copies make anew; what a subclass adds, they take over
+        self._keep_own("_mark")
 
     @property
     def seeds(self) -> tuple[int, ...]:
@@ -227,17 +228,11 @@ class Simulation:
         self._restore(saved)
 
     def clone(self) -> Self:
-        """A copy with worlds of its own, which goes on as this one does; `copy.copy` and `deepcopy` give the same."""
+        """A copy with worlds of its own, which goes on as this one does; so do `copy.copy` and `deepcopy`."""
         made = self._fresh_one()
         made._restore(self.save())
         vars(made).update(copy.deepcopy(self._added()))
         return made
-
-    def __copy__(self) -> Self:
-        return self.clone()
-
-    def __deepcopy__(self, memo: Any) -> Self:
-        return self.clone()
 
     def __getstate__(self) -> dict[str, Any]:
         return self._arguments() | {"saved": self.save(), "added": self._added()}
@@ -250,10 +245,6 @@ class Simulation:
         if saved is not None:
             self.restore(saved)
         vars(self).update(added)
-
-    def _added(self) -> dict[str, Any]:
-        """Attributes of a subclass, or of a user."""
-        return {name: value for name, value in vars(self).items() if name not in self._own}
 
     def _arguments(self) -> dict[str, Any]:
         """What it was made with; the rules without what is compiled for this process."""
