@@ -18,7 +18,7 @@ from hedon.config import Config
 from hedon.config.validate import rebuild
 from hedon.experiment.plan import Moment
 from hedon.jobs.make import make_jobs
-from hedon.jobs.process import Display
+from hedon.jobs.process import JobListener
 from hedon.jobs.store import Store
 from hedon.jobs.work import Job, Outcome
 from hedon.record.reader import open_run
@@ -74,7 +74,7 @@ def run_sweep(
     checkpoint_seconds: float = 1e9,
     workers: int = 0,
     ray: str | None = None,
-    display: Display | None = None,
+    display: JobListener | None = None,
 ) -> dict[str, Outcome]:
     """How each batch that was open ended, by name."""
     with open_tasks(plan, store, checkpoint_seconds, on_cluster=ray is not None) as jobs:

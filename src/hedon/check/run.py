@@ -6,7 +6,7 @@ from pathlib import Path
 
 import polars as pl
 
-from hedon.check.finding import Finding, Verdict
+from hedon.check.finding import CheckResult, Finding
 from hedon.check.founder import check_founders
 from hedon.check.genealogy import check_agents
 from hedon.check.population import check_population
@@ -66,7 +66,7 @@ class _Folder:
         return len(self.findings) - before
 
 
-def check_run(path: Path | str) -> Verdict:
+def check_run(path: Path | str) -> CheckResult:
     """Checks a run's folder. Only reads it, and needs no engine.
 
     Args:
@@ -93,7 +93,7 @@ def check_run(path: Path | str) -> Verdict:
     folder.add(_check_networks(folder))
     folder.add(check_founders(folder.path, folder.config, folder.manifest, folder.tables.get("agents")))
     _check_end(folder)
-    return Verdict(tuple(dict.fromkeys(folder.findings)), tuple(folder.notes), tuple(_usable(folder)))
+    return CheckResult(tuple(dict.fromkeys(folder.findings)), tuple(folder.notes), tuple(_usable(folder)))
 
 
 def _check_networks(folder: _Folder) -> Iterator[Finding]:

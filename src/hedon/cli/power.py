@@ -54,7 +54,7 @@ def power(
     """
     from hedon.cli.display.analysis import analysis_group
     from hedon.report.answer import write_answer
-    from hedon.sweep.power import ALONE, APART, Spread, power_answer, read_pilot, spreads
+    from hedon.sweep.power import ALONE, APART, PilotSpread, power_answer, read_pilot, spreads
 
     sizes = _numbers(effect)
     if between is not None and by is None:
@@ -66,7 +66,7 @@ def power(
     if source is None:
         if not sd or sd < 0 or by or against or only:
             raise PowerError("--sd: must be above 0, and needs no --by, --against or --only")
-        found = [Spread("measure", design, sd, sd, sd, 0) for design in (ALONE, APART)]
+        found = [PilotSpread("measure", design, sd, sd, sd, 0) for design in (ALONE, APART)]
     else:
         other = None if against is None else read_pilot(against, columns(only))
         found = spreads(read_pilot(source, columns(only)), by, other, between)

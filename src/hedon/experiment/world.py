@@ -10,7 +10,7 @@ from hedon.config.config import Config
 from hedon.config.layout import SpeciesLayout, choose_species, layouts, store_columns
 from hedon.config.problem import nearest
 from hedon.error import ArgumentError, EngineError
-from hedon.experiment.state import State
+from hedon.experiment.world_arrays import WorldArrays
 from hedon.record.schema import Columns, columns_of
 from hedon.text import brief
 
@@ -109,9 +109,9 @@ class World:
         return self.view("living")[: self.alive]
 
     @cached_property
-    def state(self) -> State:
-        """The arrays of the state as attributes: `world.state.energy` is `world.view("life.energy")`; see `State`."""
-        return State(self.view, tuple(self._engine.view_names()))
+    def state(self) -> WorldArrays:
+        """The arrays as attributes: `world.state.energy` is `world.view("life.energy")`; see `WorldArrays`."""
+        return WorldArrays(self.view, tuple(self._engine.view_names()))
 
     def view(self, path: str) -> NDArray[Any]:
         """A read-only view of one array of the state, of any shape, mostly by slot; valid until the next `run`.

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from hedon.experiment.interrupt import count_interrupts
 from hedon.jobs.error import JobError
-from hedon.jobs.process import Display
+from hedon.jobs.process import JobListener
 from hedon.jobs.retry import RetryLimit
 from hedon.jobs.work import Job, Outcome, attempt
 
@@ -25,7 +25,7 @@ IN_FLIGHT = 4
 _LOOK_SECONDS = 0.5
 
 
-def make_on_ray(jobs: Sequence[T], address: str, display: Display[T], workers: int = 0) -> dict[Path, Outcome]:
+def make_on_ray(jobs: Sequence[T], address: str, display: JobListener[T], workers: int = 0) -> dict[Path, Outcome]:
     """Makes jobs on a cluster; one processor each. Ctrl-C ends it after the current windows.
 
     Args:
@@ -72,7 +72,7 @@ def import_ray() -> Any:
         raise JobError('--ray needs the optional packages: pip install "hedon[ray]"') from None
 
 
-def _see_through(ray: Any, jobs: Sequence[T], limit: RetryLimit, display: Display[T]) -> dict[Path, Outcome]:
+def _see_through(ray: Any, jobs: Sequence[T], limit: RetryLimit, display: JobListener[T]) -> dict[Path, Outcome]:
     """Submits jobs and awaits them; those whose process is lost again, as long as that leads further."""
     lost = (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError)
     # Ray's own tries have no end where memory runs out, and do not see whether a job gets further.

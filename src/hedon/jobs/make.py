@@ -4,14 +4,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from hedon.jobs.process import Display, make_here
+from hedon.jobs.process import JobListener, make_here
 from hedon.jobs.work import Job, Outcome
 from hedon.record.provenance import usable_cpus
 
 T = TypeVar("T", bound=Job)
 
 
-def make_jobs(jobs: Sequence[T], display: Display[T], threads: int = 0, ray: str | None = None) -> dict[Path, Outcome]:
+def make_jobs(
+    jobs: Sequence[T], display: JobListener[T], threads: int = 0, ray: str | None = None
+) -> dict[Path, Outcome]:
     """Makes jobs, each in a process of its own; those whose runs are begun go on.
 
     Args:

@@ -43,8 +43,8 @@ class _Worker(Generic[T]):
     ready: bool = False
 
 
-class Display(Protocol[T_contra]):
-    """A progress display of several runs."""
+class JobListener(Protocol[T_contra]):
+    """What hears how several runs go on and end, such as a display of their progress."""
 
     def update(self, job: T_contra, moment: Moment) -> None:
         """Shows a moment of a run; called about five times a second for each.
@@ -65,7 +65,7 @@ class Display(Protocol[T_contra]):
         ...
 
 
-def make_here(jobs: Sequence[T], threads: int, display: Display[T]) -> dict[Path, Outcome]:
+def make_here(jobs: Sequence[T], threads: int, display: JobListener[T]) -> dict[Path, Outcome]:
     """Makes the runs of jobs, each in its own process, as many at a time as fill the threads.
 
     Ctrl-C or SIGTERM ends every run after its current window, a second one immediately; jobs that have not begun are
@@ -148,7 +148,7 @@ def _blocked_signals() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _hear(worker: _Worker[T], display: Display[T]) -> Outcome | None:
+def _hear(worker: _Worker[T], display: JobListener[T]) -> Outcome | None:
     """Reads one message of a worker: a moment, which is shown, or how its run ended, which is returned."""
     try:
         said = worker.link.recv()

@@ -24,7 +24,7 @@ _LEVEL = 0.05
 
 
 @dataclass(frozen=True)
-class Estimate:
+class ClaimEstimate:
     """The figure of a claim.
 
     Attributes:
@@ -41,7 +41,7 @@ class Estimate:
     reason: str = ""
 
 
-def estimate(claim: Claim, figures: Floats, worlds: Sequence[WorldRecord]) -> Estimate:
+def estimate(claim: Claim, figures: Floats, worlds: Sequence[WorldRecord]) -> ClaimEstimate:
     """Sums up the figures of some worlds as a claim wants it.
 
     Args:
@@ -50,35 +50,35 @@ def estimate(claim: Claim, figures: Floats, worlds: Sequence[WorldRecord]) -> Es
         worlds: that they are of, for the neutral genes.
     """
     if len(figures) == 0:
-        return Estimate()
+        return ClaimEstimate()
     if claim.over_worlds == "modes":
         return _modes(figures)
     if claim.over_worlds == "walk":
         return _walk(figures)
     if claim.over_worlds == "share":
         count = int(np.count_nonzero(figures > 0))
-        return Estimate(count / len(figures), *exact_share_interval(count, len(figures), claim.level))
+        return ClaimEstimate(count / len(figures), *exact_share_interval(count, len(figures), claim.level))
     if claim.over_worlds == "setting":
         value = float(figures[0])
-        return Estimate(value, value, value)
+        return ClaimEstimate(value, value, value)
     if claim.over_worlds in ("spread", "distance"):
         return _against_neutral(claim, figures, worlds)
     logs = claim.over_worlds == "ratio"
     value, low, high = mean_bounds(np.log(figures[figures > 0]) if logs else figures)
-    return Estimate(math.exp(value), math.exp(low), math.exp(high)) if logs else Estimate(value, low, high)
+    return ClaimEstimate(math.exp(value), math.exp(low), math.exp(high)) if logs else ClaimEstimate(value, low, high)
 
 
-def _modes(figures: Floats) -> Estimate:
+def _modes(figures: Floats) -> ClaimEstimate:
     """Two modes hold; that none were found does not say that there is one, so the claim never fails."""
     found = modes(figures)
     power = f"power {found.power:.2f}"
     if found.answer == "two":
         sides = f"{found.low_worlds} worlds around {found.low:.2f}, {found.high_worlds} around {found.high:.2f}"
-        return Estimate(verdict="holds", reason=f"{sides}; dip test: p {found.p:.2g}, {power}")
-    return Estimate(verdict="undecided", reason=f"dip test: p {found.p:.2f}, {power} to find two clear modes")
+        return ClaimEstimate(verdict="holds", reason=f"{sides}; dip test: p {found.p:.2g}, {power}")
+    return ClaimEstimate(verdict="undecided", reason=f"dip test: p {found.p:.2f}, {power} to find two clear modes")
 
 
-def _walk(scores: Floats) -> Estimate:
+def _walk(scores: Floats) -> ClaimEstimate:
     """Whether scores differ from those of neutral genes: by a common direction, or by being too far out or too near.
 
     Both tests are corrected for each other. That nothing was found does not say that the weight drifts, so the claim
@@ -86,7 +86,7 @@ def _walk(scores: Floats) -> Estimate:
     """
     direction, distance, held = score_tests(scores)
     p_direction, p_distance = holm([direction.p, min(1.0, 2.0 * min(held.p, distance.p))])
-    return Estimate(
+    return ClaimEstimate(
         direction.effect,
         direction.drift_low,
         direction.drift_high,
@@ -95,23 +95,23 @@ def _walk(scores: Floats) -> Estimate:
     )
 
 
-def _against_neutral(claim: Claim, scores: Floats, worlds: Sequence[WorldRecord]) -> Estimate:
+def _against_neutral(claim: Claim, scores: Floats, worlds: Sequence[WorldRecord]) -> ClaimEstimate:
     """Spread or distance of scores, 1 for a neutral gene; undecided where recorded neutral genes have another one."""
     if claim.over_worlds == "spread":
         if len(scores) < 2:
-            return Estimate()
+            return ClaimEstimate()
         value, low, high = spread_interval(scores)
     else:
         value, low, high = distance_interval(scores)
     drifts = [(world, drift) for world in worlds for drift in standard_drift(world, LAST_AGENTS)]
     neutral = np.array([drift.score for world, drift in drifts if drift.weight in world.neutral_names], np.float64)
     if len(neutral) < 2:
-        return Estimate(value, low, high)
+        return ClaimEstimate(value, low, high)
     control = distance_interval(neutral)
     said = "recorded neutral genes: {:.2f} ({:.2f} … {:.2f})".format(*control)
     if control[1] <= 1.0 <= control[2]:
-        return Estimate(value, low, high, reason=said)
-    return Estimate(value, low, high, "undecided", f"{said}, which differ from the walks")
+        return ClaimEstimate(value, low, high, reason=said)
+    return ClaimEstimate(value, low, high, "undecided", f"{said}, which differ from the walks")
 
 
 def compare(

@@ -18,7 +18,7 @@ from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.statistic.contrast import fisher_mid_p
 from hedon.statistic.minimum import FOR_FULL_LENGTH
 from hedon.study.claim import Claim, Order
-from hedon.study.estimate import Estimate, compare, estimate
+from hedon.study.estimate import ClaimEstimate, compare, estimate
 
 HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"
 DIFFERS, NOT_SHOWN = "differs", "no difference shown"
@@ -144,7 +144,7 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
     if fewest < FOR_FULL_LENGTH or shortfalls:
         name, why = UNDECIDED, "; ".join([*([TOO_FEW] if fewest < FOR_FULL_LENGTH else []), *shortfalls])
     condition = f"{first[0].condition} against {second[0].condition}"
-    found = Estimate(value, low, high)
+    found = ClaimEstimate(value, low, high)
     return _verdict(order, condition, name, found, math.nan, NO_SPREAD, sum(map(len, parts)), [why, *remarks])
 
 
@@ -180,7 +180,7 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
     if unknown and not found.followed:
         reasons.append(f"the share is that by step {found.known_until:,.0f}")
     p, against = _against_reported(claim, found.extinct, found.worlds, unknown)
-    figure = Estimate(found.share, found.low, found.high)
+    figure = ClaimEstimate(found.share, found.low, found.high)
     return _verdict(claim, condition, name, figure, p, against, found.worlds, reasons)
 
 
@@ -236,7 +236,7 @@ def _verdict(
     claim: Claim | Order,
     condition: str,
     name: str,
-    found: Estimate,
+    found: ClaimEstimate,
     p: float,
     against: str,
     worlds: int,

@@ -51,7 +51,7 @@ class Base:
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class SweepCondition:
     """A setting of a sweep.
 
     Attributes:
@@ -85,7 +85,7 @@ class Conditions:
         invalid: of each other one, where it is and what is wrong.
     """
 
-    found: tuple[Condition, ...]
+    found: tuple[SweepCondition, ...]
     bases: Mapping[str, Base]
     invalid: tuple[ConfigError, ...]
 
@@ -149,7 +149,7 @@ def make_conditions(loader: Loader, settings: Sequence[Settings]) -> Conditions:
     groups: dict[str, list[int]] = {}
     for index, each in enumerate(settings):
         groups.setdefault(repr(list(_shaping(each).items())), []).append(index)
-    found: dict[int, Condition] = {}
+    found: dict[int, SweepCondition] = {}
     invalid: dict[int, ConfigError] = {}
     bases: dict[str, Base] = {}
     for group in groups.values():
@@ -165,7 +165,7 @@ def make_conditions(loader: Loader, settings: Sequence[Settings]) -> Conditions:
     return Conditions(tuple(found[i] for i in order), bases, tuple(invalid[i] for i in sorted(invalid)))
 
 
-_Made = Iterator[tuple[int, Condition | ConfigError, Base | None]]
+_Made = Iterator[tuple[int, SweepCondition | ConfigError, Base | None]]
 
 
 def _shaping(settings: Settings) -> Settings:
@@ -177,7 +177,7 @@ def _one_by_one(loader: Loader, settings: Sequence[Settings], group: Sequence[in
     for index in group:
         try:
             base = _base(loader.load(settings[index]), {})
-            yield index, Condition(base.digest, base.digest, settings[index]), base
+            yield index, SweepCondition(base.digest, base.digest, settings[index]), base
         except ConfigError as error:
             yield index, error, None
 
@@ -200,7 +200,7 @@ def _by_values(loader: Loader, settings: Sequence[Settings], group: Sequence[int
     if not all(places.values()) or len(set(every)) < len(every):
         return []
     base, prints = _base(plan, places), Fingerprint(plan.config)
-    made: list[tuple[int, Condition | ConfigError, Base | None]] = []
+    made: list[tuple[int, SweepCondition | ConfigError, Base | None]] = []
     whole: dict[int, Config] = {}
     for index in group:
         own = settings[index]
@@ -212,7 +212,7 @@ def _by_values(loader: Loader, settings: Sequence[Settings], group: Sequence[int
         if not whole or index == group[-1]:
             whole[index] = config
         values = {place: value_at(config, place) for place in every}
-        made.append((index, Condition(prints.digest(values)[:DIGITS], base.digest, own), base))
+        made.append((index, SweepCondition(prints.digest(values)[:DIGITS], base.digest, own), base))
     first = next((index for index, _, base in made if base is None), None)
     good = all(_loads_as(loader, settings[index], config) for index, config in whole.items())
     return made if good and (first is None or _loads_as(loader, settings[first], None)) else []

@@ -22,7 +22,7 @@ from hedon.experiment.argument import parse_seeds
 from hedon.jobs.store import Store
 from hedon.record.folder import holds_run
 from hedon.record.manifest import RuleSource
-from hedon.sweep.condition import DIGITS, Base, Condition, changes
+from hedon.sweep.condition import DIGITS, Base, SweepCondition, changes
 from hedon.sweep.error import SweepError
 
 PLAN, TABLE = "plan.json", "table.parquet"
@@ -75,7 +75,7 @@ class SweepPlan:
     factors: tuple[str, ...]
     ranged: tuple[str, ...]
     places: Mapping[str, Mapping[str, Sequence[str]]]
-    conditions: tuple[Condition, ...]
+    conditions: tuple[SweepCondition, ...]
 
     @property
     def worlds(self) -> int:
@@ -87,7 +87,7 @@ class SweepPlan:
         """Steps of all worlds together, if none dies out."""
         return self.steps * self.worlds
 
-    def key(self, condition: Condition) -> str:
+    def key(self, condition: SweepCondition) -> str:
         """The beginning of the names of a condition's batches."""
         return f"{condition.digest}-{self.steps}"
 
@@ -118,7 +118,7 @@ class SweepPlan:
                     found.append(batch if seeds == batch.seeds else self._batch(batch.condition, seeds))
         return found
 
-    def changes(self, condition: Condition) -> dict[str, Any]:
+    def changes(self, condition: SweepCondition) -> dict[str, Any]:
         """What a condition changes in its base, by complete paths."""
         return changes(self.places[condition.base], condition.settings)
 
@@ -257,7 +257,7 @@ def load_plan(store: Store) -> SweepPlan:
         bases, columns = list(read["places"]), read["values"]
         rows = zip(*columns.values(), strict=True) if columns else [()] * len(read["digests"])
         conditions = tuple(
-            Condition(key, bases[base], dict(zip(columns, row, strict=True)))
+            SweepCondition(key, bases[base], dict(zip(columns, row, strict=True)))
             for key, base, row in zip(read["digests"], read["bases"], rows, strict=True)
         )
         plain = {name: _tuples(read[name]) for name in _PLAIN}

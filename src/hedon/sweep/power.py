@@ -52,7 +52,7 @@ class Pilot:
 
 
 @dataclass(frozen=True)
-class Spread:
+class PilotSpread:
     """How much worlds differ in a measure.
 
     Attributes:
@@ -117,7 +117,7 @@ def _assay_worlds(folder: Path) -> pl.DataFrame:
 
 def spreads(
     pilot: Pilot, by: str | None = None, other: Pilot | None = None, between: str | None = None
-) -> list[Spread]:
+) -> list[PilotSpread]:
     """How much the worlds of a pilot differ.
 
     Args:
@@ -179,7 +179,7 @@ def _pairs(
     return changes.partition_by(held) if held else [changes]
 
 
-def _spread(title: str, design: str, groups: Sequence[pl.DataFrame]) -> list[Spread]:
+def _spread(title: str, design: str, groups: Sequence[pl.DataFrame]) -> list[PilotSpread]:
     """The standard deviation of the values within groups, pooled; none if it is not known or 0.
 
     Worlds of equal seeds can be alike in all groups: then a group more tells nothing new. So the interval counts fewer
@@ -192,11 +192,15 @@ def _spread(title: str, design: str, groups: Sequence[pl.DataFrame]) -> list[Spr
     if freedom < 1 or not (within**2).sum() > 0:
         return []
     sd = math.sqrt(float((within**2).sum()) / freedom)
-    return [Spread(title, design, *distance_interval(np.full(min(freedom, seeds - 1), sd)), len(within))]
+    return [PilotSpread(title, design, *distance_interval(np.full(min(freedom, seeds - 1), sd)), len(within))]
 
 
 def power_answer(
-    found: Sequence[Spread], effects: Sequence[float] = (), power: float = 0.8, level: float = 0.05, pilot: str = ""
+    found: Sequence[PilotSpread],
+    effects: Sequence[float] = (),
+    power: float = 0.8,
+    level: float = 0.05,
+    pilot: str = "",
 ) -> Answer:
     """How many worlds are needed, for each measure and design; without effects, what some numbers of worlds see.
 
@@ -216,7 +220,7 @@ def power_answer(
     return Answer("power", "How many worlds are needed", content, tables, intro, figure)
 
 
-def _needed(found: Sequence[Spread], effects: Sequence[float], power: float, level: float) -> ResultTable:
+def _needed(found: Sequence[PilotSpread], effects: Sequence[float], power: float, level: float) -> ResultTable:
     rows = []
     for each in found:
         for effect in effects:
@@ -232,7 +236,7 @@ def _needed(found: Sequence[Spread], effects: Sequence[float], power: float, lev
     return make_table("power", "Worlds needed", rows, note)
 
 
-def _seen(found: Sequence[Spread], power: float, level: float) -> ResultTable:
+def _seen(found: Sequence[PilotSpread], power: float, level: float) -> ResultTable:
     rows = []
     for each in found:
         head = {"measure": each.measure, "design": each.design, "sd": each.sd, "worlds": each.worlds}
@@ -242,12 +246,12 @@ def _seen(found: Sequence[Spread], power: float, level: float) -> ResultTable:
     return make_table("power", "Effects that are seen", rows, f"{note}--effect asks the other way. {_meanings(found)}")
 
 
-def _meanings(found: Sequence[Spread]) -> str:
+def _meanings(found: Sequence[PilotSpread]) -> str:
     designs = dict.fromkeys(each.design for each in found)
     return "; ".join(f"{design}: {DESIGNS[design]}" for design in designs) + "."
 
 
-def draw_power(found: Sequence[Spread], effects: Sequence[float], power: float, level: float) -> Figure:
+def draw_power(found: Sequence[PilotSpread], effects: Sequence[float], power: float, level: float) -> Figure:
     """The chance to see the first effect over the number of worlds; by the standard deviation, where none is given.
 
     Args:

@@ -27,7 +27,7 @@ from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
 from hedon.report.summary import summarize
-from hedon.sweep.condition import Condition
+from hedon.sweep.condition import SweepCondition
 from hedon.sweep.plan import Batch, SweepPlan, load_config_of, load_rules
 from hedon.sweep.row import world_rows
 
@@ -54,7 +54,7 @@ class Task:
 
     location: str
     batch: Batch
-    condition: Condition
+    condition: SweepCondition
     changed: Mapping[str, Any]
     steps: int
     keep: tuple[str, ...]

@@ -11,7 +11,7 @@ PARTS = ("", "life.", "physics.bodies.")
 """Where an attribute is looked for, in this order."""
 
 
-class State:
+class WorldArrays:
     """The arrays of a world's state, each read-only, with a row per slot, valid until the next `run`.
 
     `state.energy` is `view("life.energy")`, `state.x` is `view("physics.bodies.x")`, `state.genome` is
