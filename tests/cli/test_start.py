@@ -43,7 +43,7 @@ def test_the_installed_command_begins_there() -> None:
     assert script.value == "hedon.cli.start:main"
 
 
-@pytest.mark.parametrize("command", ["report", "resume", "branch", "check", "replay-fault"])
+@pytest.mark.parametrize("command", ["report", "resume", "branch", "check"])
 def test_a_path_that_no_file_system_takes_is_a_message(command: str) -> None:
     answer = hedon(command, "a" * 300)
     assert answer.returncode == 2

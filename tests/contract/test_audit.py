@@ -39,7 +39,9 @@ def test_a_sound_world_passes(world):
 def test_a_body_in_another_is_named(world):
     for axis, value in (("x", 200.0), ("y", 106.0)):
         poke(world, f"physics.bodies.{axis}", slot_of(world, 4), value)
-    with pytest.raises(EngineError, match=r"overlap_too_deep.*World 0, step 64, value 1\d\.\d+, agent 1, with agent 4"):
+    with pytest.raises(
+        EngineError, match=r"overlap_too_deep.*World 0, step 64, value 1\d(\.\d+)?, agent 1, with agent 4"
+    ):
         world.run(1)
 
 
@@ -102,7 +104,7 @@ def test_a_number_that_is_not_finite_is_named(path, value):
 
 def test_a_slot_held_twice_is_named(world):
     poke(world, "living", 1, slot_of(world, 0))
-    with pytest.raises(EngineError, match=r"slots_inconsistent.*replay-fault"):
+    with pytest.raises(EngineError, match=r"slots_inconsistent.*check RUN --fault"):
         world.run(1)
     with pytest.raises(EngineError, match="slots are inconsistent"):
         world.engine.save(0)
@@ -138,7 +140,7 @@ def test_counts_that_do_not_add_up_are_named(world, path, value):
 def test_energy_from_nowhere_is_named(world, path):
     index = slot_of(world, 2) if path == "life.energy" else 0
     poke(world, path, index, world.worlds[0].view(path)[index] + 1e-6)
-    with pytest.raises(EngineError, match=r"ledger_open.*value -?0\.000001"):
+    with pytest.raises(EngineError, match=r"ledger_open.*value -?1e-06"):
         world.run(1)
 
 

@@ -56,7 +56,7 @@ def test_the_same_fault_recurs(failed):
     folder, said = failed
     again = replay_fault(folder)
     assert again.recurred == again.recorded == said
-    answer = CliRunner().invoke(app, ["replay-fault", str(folder)])
+    answer = CliRunner().invoke(app, ["check", str(folder), "--fault"])
     assert (answer.exit_code, said in answer.output) == (0, True)
     before = load_manifest(folder)
     with pytest.raises(EngineError, match=said.split(":")[0]):
@@ -82,7 +82,7 @@ def test_a_fault_of_the_memory_stops_the_run_and_does_not_recur(tmp_path, monkey
     break_at(monkeypatch, 2 * WINDOW, "counters.energy_eaten", -7.0)
     with pytest.raises(EngineError, match=r"ledger_open.*World 1, step 192"):
         small_run(tmp_path / "run", 1000)
-    answer = CliRunner().invoke(app, ["replay-fault", str(tmp_path / "run")])
+    answer = CliRunner().invoke(app, ["check", str(tmp_path / "run"), "--fault"])
     assert answer.exit_code == 1
     assert "did not happen again" in answer.output
     assert resume(tmp_path / "run").status == "finished"

@@ -35,9 +35,9 @@ COMMANDS = {
     "phylogeny": ("export", "phylogeny", "{run}", "--out", "{out}.alife.csv"),
     "newick": ("export", "phylogeny", "{run}", "--format", "newick", "--out", "{out}.nwk"),
     "view": ("view", "{run}", "--export", "{out}-site"),
-    "video": ("video", "{run}", "{out}.gif", "--from", "224", "--speed", "32", "--width", "160"),
+    "video": ("export", "video", "{run}", "{out}.gif", "--from", "224", "--speed", "32", "--width", "160"),
     "branch": ("branch", "{run}", "--steps", "260", "--out", "{out}-branch", *QUIET),
-    "replay-fault": ("replay-fault", "{run}", "--threads", "1"),
+    "fault": ("check", "{run}", "--fault", "--threads", "1"),
     "founders": ("run", "predator", *SMALL, "--founders", "{run}", "--steps", "1", "--out", "{out}-run", *QUIET),
     "resume": ("resume", "{out}-resumed", "--steps", "260", *QUIET),
 }
@@ -94,7 +94,7 @@ def test_a_damaged_file_ends_no_command_in_a_traceback(original, tmp_path, name,
         file.write_bytes(damage(content, draw))
         command(name, run, tmp_path / f"{trial}")
         file.write_bytes(content)
-    assert name in ("replay-fault", "view") or command(name, run, tmp_path / "whole") == ""
+    assert name in ("fault", "view") or command(name, run, tmp_path / "whole") == ""
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -104,7 +104,7 @@ def test_a_part_cut_in_half_is_named(original, tmp_path, name):
         part = part_paths(run, table)[-1]
         part.write_bytes(part.read_bytes()[: part.stat().st_size // 2])
     said = command(name, run, tmp_path / "cut")
-    assert name in ("replay-fault", "branch") or "part-000" in said  # these read checkpoints alone
+    assert name in ("fault", "branch") or "part-000" in said  # these read checkpoints alone
 
 
 NEVER = {

@@ -1,10 +1,12 @@
-"""`hedon check`: checks whether the files of runs are complete and agree."""
+"""`hedon check`: are the files of runs whole, does a run come out again, and why do two runs differ?"""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from hedon.cli.run import Threads
+from hedon.error import ArgumentError
 from hedon.record.error import RecordError
 from hedon.text import count
 
@@ -15,17 +17,64 @@ def check(
         bool,
         typer.Option("--replay", help="Also compute the run again, from its oldest checkpoint, and compare."),
     ] = False,
+    against: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="RUN", help="Say instead why another run differs: settings, versions, and where worlds part."
+        ),
+    ] = None,
+    fault: Annotated[
+        bool,
+        typer.Option(
+            "--fault",
+            help="Compute again instead from the last checkpoint before the run's fault: does it happen again?",
+        ),
+    ] = False,
+    threads: Threads = 0,
 ) -> None:
     """Check that every file of a run is there, is not damaged, and agrees with the others.
 
-    Prints what is wrong and what can still be used. Exit code 0 if nothing is wrong, 1 if something is wrong, 2 if a
-    folder holds no run.
+    Prints what is wrong and what can still be used. Exit code 0 if nothing is wrong, if two runs agree or if a fault
+    happens again; 1 if not; 2 if a folder holds no run.
 
     \b
     Examples:
       hedon check runs/*
       hedon check runs/baseline --replay
+      hedon check runs/baseline-corrected-s1 --against runs/baseline-corrected-s1-run2
+      hedon check runs/broken --fault
     """
+    asked = [name for name, is_asked in (("--replay", replay), ("--against", against), ("--fault", fault)) if is_asked]
+    if len(asked) > 1:
+        raise ArgumentError(f"{asked[0]} and {asked[1]}: give one of them")
+    if against is None and not fault:
+        _check(runs, replay=replay, threads=threads)
+    elif len(runs) > 1:
+        raise ArgumentError(f"{asked[0]} is of one run, not of {len(runs)}")
+    elif not (_replay_fault(runs[0], threads) if against is None else _compare(runs[0], against)):
+        raise typer.Exit(1)
+
+
+def _compare(run: Path, other: Path) -> bool:
+    from hedon.cli.display.difference import show_difference
+
+    return show_difference(run, other)
+
+
+def _replay_fault(run: Path, threads: int) -> bool:
+    """Computes a fault again. Returns whether it happens again: else the machine or a changed source is the cause."""
+    from hedon.experiment.fault import replay_fault
+
+    found = replay_fault(run, threads)
+    typer.echo(f"recorded: {found.recorded}")
+    typer.echo(f"from step {found.start:,} on: {found.recurred or 'no fault'}")
+    again = found.recurred == found.recorded
+    causes = "Likely causes: bad memory in the machine, or a change of hedon's source."
+    typer.echo("The same fault happened again." if again else f"It did not happen again. {causes}")
+    return again
+
+
+def _check(runs: list[Path], *, replay: bool, threads: int) -> None:
     from hedon.check.run import check_run
 
     code = 0

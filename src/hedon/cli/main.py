@@ -9,21 +9,17 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from hedon.cli import assay, config, study, sweep
+from hedon.cli import assay, config, export, study, sweep
 from hedon.cli.analyze import analyze
 from hedon.cli.branch import branch
 from hedon.cli.check import check
 from hedon.cli.contrast import contrast
-from hedon.cli.diff import diff
-from hedon.cli.export import export
 from hedon.cli.forecast import forecast
 from hedon.cli.output import OutputError, give_up, guard, pipe_closed
 from hedon.cli.power import power
-from hedon.cli.replay_fault import replay_fault
 from hedon.cli.report import report
 from hedon.cli.resume import resume
 from hedon.cli.run import run
-from hedon.cli.video import video
 from hedon.cli.view import view
 from hedon.error import HedonError
 from hedon.limit import address_limit
@@ -42,6 +38,9 @@ GONE = {
     ("bench",): "the benchmarks are not in the package any more: call `uv run python -m benchmarks` in a checkout",
     ("demography",): "it is `hedon forecast` now",
     ("assay", "start"): "it is `hedon assay stability` now",
+    ("diff",): "it is `hedon check RUN --against RUN` now",
+    ("replay-fault",): "it is `hedon check RUN --fault` now",
+    ("video",): "it is `hedon export video` now",
 }
 """Commands that there were once, with what replaces them."""
 GONE_OPTIONS = {("run", "--device"): "--backend"}
@@ -61,17 +60,14 @@ app.command()(run)
 app.command()(resume)
 app.command()(branch)
 app.command()(view)
-app.command()(video)
 app.command()(report)
 app.command()(analyze)
 app.command()(contrast)
 app.command()(power)
 app.command()(forecast)
-app.command()(export)
 app.command()(check)
-app.command()(diff)
-app.command()(replay_fault)
 app.command()(config.presets)
+app.add_typer(export.app, name="export")
 app.add_typer(assay.app, name="assay")
 app.add_typer(sweep.app, name="sweep")
 app.add_typer(study.app, name="study")

@@ -31,7 +31,7 @@ def stack(layers: Iterable[Table]) -> Table:
 
 
 def settle_food(tables: Table) -> Iterator[Problem]:
-    """Removes `*` and the kinds that are false from `food`, in place; yields what is wrong with the kinds."""
+    """Removes `*` and kinds that are false or unknown from `food`, in place; yields what is wrong with the kinds."""
     food = tables.get("food")
     if not isinstance(food, dict):
         return
@@ -49,6 +49,7 @@ def settle_food(tables: Table) -> Iterator[Problem]:
             known = ", ".join(others) or "none"
             message = f"there is no such kind of food (known: {known}); a new kind must say what it gives"
             yield Problem(f"food.{kind}", message, nearest=nearest(kind, others))
+            del food[kind]
 
 
 def settle_species(tables: Table, layers: Sequence[Table]) -> Iterator[Problem]:
@@ -153,7 +154,7 @@ def _laws(table: Table, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def settle_stores_and_queries(tables: Table) -> Iterator[Problem]:
-    """Removes the stores and queries that are false from each species, in place; yields stores without a capacity."""
+    """Removes stores and queries that are false from each species; removes and yields stores without a capacity."""
     species = tables.get("species")
     for name, own in species.items() if isinstance(species, dict) else ():
         if not isinstance(own, dict):
@@ -169,12 +170,13 @@ def settle_stores_and_queries(tables: Table) -> Iterator[Problem]:
             yield Problem(f"species.{name}.store.{ENERGY}", message)
             del kept[ENERGY]
         known = [store for store, value in kept.items() if isinstance(value, dict) and "capacity" in value]
-        for store, value in kept.items():
+        for store, value in list(kept.items()):
             if isinstance(value, dict) and store not in known:
                 message = (
                     f"there is no such store (known: {', '.join(known) or 'none'}); a new one must say its capacity"
                 )
                 yield Problem(f"species.{name}.store.{store}", message, nearest=nearest(store, known))
+                del kept[store]
 
 
 def _lay(base: Any, over: Any) -> Any:

@@ -16,7 +16,7 @@ from hedon.record.manifest import load_manifest, save_manifest
 
 
 def said(*folders: Path) -> tuple[int, str]:
-    done = CliRunner().invoke(app, ["diff", *map(str, folders)])
+    done = CliRunner().invoke(app, ["check", str(folders[0]), "--against", str(folders[1])])
     assert done.exception is None or isinstance(done.exception, SystemExit), repr(done.exception)
     return done.exit_code, done.output
 
@@ -127,5 +127,5 @@ def test_species_part_each_by_itself(tmp_path):
 
 
 def test_a_folder_without_a_run_is_trouble(runs, tmp_path):
-    done = CliRunner().invoke(app, ["diff", str(runs / "a"), str(tmp_path)])
+    done = CliRunner().invoke(app, ["check", str(runs / "a"), "--against", str(tmp_path)])
     assert "RecordError" in repr(done.exception), "which ends in exit code 2"

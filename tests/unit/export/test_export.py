@@ -6,13 +6,13 @@ from pathlib import Path
 import dendropy
 import polars as pl
 import pytest
-import typer
 from polars.testing import assert_frame_equal
 from synthetic_run import write_run
 from typer.testing import CliRunner
 
-from hedon.cli.export import export
+from hedon.cli.export import app
 from hedon.config import load_config
+from hedon.error import HedonError
 from hedon.experiment.branch import branch
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.run import run
@@ -20,8 +20,6 @@ from hedon.export.phylogeny import alife_table, has_two_parents, last_step, newi
 from hedon.export.table import ExportError
 from hedon.record.reader import open_run
 
-APP = typer.Typer()
-APP.command()(export)
 READERS = {"csv": pl.read_csv, "parquet": pl.read_parquet, "arrow": pl.read_ipc}
 
 
@@ -32,8 +30,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def invoke(*arguments: str) -> str:
     """Runs the command; an error of hedon is given as its text."""
-    result = CliRunner().invoke(APP, list(arguments))
-    return str(result.exception) if result.exception else result.output
+    result = CliRunner().invoke(app, list(arguments))
+    return str(result.exception) if isinstance(result.exception, HedonError) else result.output
 
 
 @pytest.mark.parametrize("table", ["agents", "population"])
@@ -49,7 +47,7 @@ def test_a_table_reads_back_as_it_is(table: str, file_format: str, folder: Path,
 
 def test_what_takes_long_is_told(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("hedon.cli.display.step.QUIET_SECONDS", 0.0)
-    result = CliRunner().invoke(APP, ["agents", str(folder), "--out", str(tmp_path / "out.csv")])
+    result = CliRunner().invoke(app, ["agents", str(folder), "--out", str(tmp_path / "out.csv")])
     assert "hedon: exporting: reading agents, step 1 of 2" in result.stderr
     assert result.stdout == f"wrote {tmp_path / 'out.csv'}\n"
 
@@ -65,9 +63,10 @@ def test_the_default_file_is_named_after_the_run(folder: Path, tmp_path: Path, m
     ("arguments", "message"),
     [
         (["frames"], "has no frames: record them with `hedon run --frames 64`"),
-        (["agents", "--format", "newick"], "--format newick: of agents there is csv, parquet, arrow"),
-        (["agents", "--world", "1"], "choose a pedigree"),
-        (["phylogeny", "--format", "csv"], "of phylogeny there is alife, newick"),
+        (["agents", "--format", "newick"], "'newick' is not one of 'csv', 'parquet', 'arrow'"),
+        (["agents", "--world", "1"], "No such option: --world"),
+        (["phylogeny", "--format", "csv"], "'csv' is not one of 'alife', 'newick', 'png'"),
+        (["phylogeny", "--world", "1", "--color", "w_normal"], "--color is of a picture"),
         (["phylogeny"], "say which world: the run has seeds 1, 2"),
         (["phylogeny", "--world", "3"], "--world 3: there is no such world: the run has seeds 1, 2"),
         (["phylogeny", "--world", "1", "--species", "wolf"], "there is no such species (there are agent)"),

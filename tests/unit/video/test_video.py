@@ -32,7 +32,7 @@ def folder(tmp_path_factory):
 
 
 def command(*arguments):
-    return CliRunner().invoke(app, ["video", *map(str, arguments)])
+    return CliRunner().invoke(app, ["export", "video", *map(str, arguments)])
 
 
 def read_back(path):

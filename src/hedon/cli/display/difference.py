@@ -1,7 +1,7 @@
-"""`hedon diff`: why do two runs differ?"""
+"""Shows why two runs differ: settings, versions, and the first window and quantity in which their worlds part."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -12,18 +12,18 @@ SHOWN = 6
 """Most quantities of a world that are printed."""
 
 
-def diff(
-    a: Annotated[Path, typer.Argument(metavar="A", help="Folder of a run, finished or not; only read.")],
-    b: Annotated[Path, typer.Argument(metavar="B", help="Folder of another run.")],
-) -> None:
-    """Say why two runs differ: settings, versions, and the first window and quantity in which their worlds part.
+def show_difference(a: Path, b: Path) -> bool:
+    """Compares two runs, their worlds by seeds, as far as both have records.
 
-    Worlds are compared by their seeds, as far as both have records. Exit code 0 if settings and records agree, 1 if
-    they differ, 2 if a folder holds no run; versions and machines are told, and do not count.
+    Args:
+        a: Folder of a run, finished or not.
+        b: Of another one.
 
-    \b
-    Example:
-      hedon diff runs/baseline-corrected-s1 runs/baseline-corrected-s1-run2
+    Returns:
+        Whether settings and records agree; versions and machines are told, and do not count.
+
+    Raises:
+        RecordError: A folder holds no run, or a damaged one.
     """
     from hedon.check.difference import compare_runs
     from hedon.text import printable
@@ -38,7 +38,7 @@ def diff(
         typer.echo(f"  seed {each.seed}: {_parting(each, ends_differ=each.seed in found.ends)}")
     if found.lonely:
         typer.echo(f"  only one of them has seed {', '.join(map(str, found.lonely))}")
-    raise typer.Exit(0 if found.same else 1)
+    return found.same
 
 
 def _parting(each: "Parting", *, ends_differ: bool) -> str:
