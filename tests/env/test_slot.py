@@ -26,7 +26,7 @@ def test_its_checker_finds_nothing_wrong():
 
 
 def test_an_episode_is_a_life():
-    """The sum of the rewards of an episode is what the engine says that the life was paid."""
+    """What an episode was paid, and how long it was, is what the engine says of the life; empty slots have none."""
     slots, rng = env.SlotVecEnv(make(CONFIG, 2, seed=3, threads=1)), np.random.default_rng(0)
     group, simulation = slots.group, slots.worlds.simulation
     assert slots.reset().shape == (60, 95)
@@ -37,16 +37,15 @@ def test_an_episode_is_a_life():
         np.testing.assert_array_equal(seen, group.observations.reshape(60, 95))
         paid += rewards
         changed = group.ids.ravel() != ids
-        np.testing.assert_array_equal(dones, changed)
+        np.testing.assert_array_equal(dones, changed & (ids >= 0))
+        assert all(("episode" in info) == done for info, done in zip(infos, dones, strict=True))
+        empty += (ids < 0).sum()
         for i in np.flatnonzero(dones):
             assert infos[i]["terminal_observation"].shape == (95,)
             assert not infos[i]["terminal_observation"].any()
             assert not infos[i]["TimeLimit.truncated"]
-            if ids[i] >= 0:
-                lives[i // 30, ids[i]] = paid[i]
-            else:
-                assert paid[i] == 0
-                empty += 1
+            assert infos[i]["episode"]["r"] == pytest.approx(paid[i], abs=1e-9)
+            lives[i // 30, ids[i]] = paid[i], infos[i]["episode"]["l"]
             paid[i] = 0
         assert [info["alive"] for info in infos] == group.alive.ravel().tolist()
         ids = group.ids.ravel().copy()
@@ -54,8 +53,11 @@ def test_an_episode_is_a_life():
     assert empty > 20
     for world in simulation.worlds:
         rows = world.deaths()
-        for identity, reward in zip(rows["agent_id"].tolist(), rows["reward"].tolist(), strict=True):
-            assert lives.pop((world.index, identity)) == pytest.approx(reward, rel=1e-4, abs=1e-6)
+        columns = (rows[name].tolist() for name in ("agent_id", "reward", "birth_step", "death_step"))
+        for identity, reward, born, died in zip(*columns, strict=True):
+            paid_in_life, steps = lives.pop((world.index, identity))
+            assert paid_in_life == pytest.approx(reward, rel=1e-4, abs=1e-6)
+            assert steps == died - born
     assert not lives
 
 
@@ -78,12 +80,13 @@ def test_worlds_begin_again_where_time_or_everyone_is_over(alpha, max_steps):
             assert world.seed not in before
             assert world.step == 0
             assert world.alive == 20
-            assert mine.all()
-            late = [info["TimeLimit.truncated"] for info in told]
+            np.testing.assert_array_equal(mine, left[i])
+            late = [info.get("TimeLimit.truncated", False) for info in told]
             assert sum(late) <= left[i].sum()
             cut += any(late)
             extinct += not any(late)
-            assert all(info["terminal_observation"].any() == over for info, over in zip(told, late, strict=True))
+            last = [info["terminal_observation"].any() if done else over for info, done, over in zip(told, mine, late)]
+            assert last == late
         assert slots.group.alive.any(axis=1).all(), step
     assert (cut > 5, extinct > 5) == (bool(max_steps), not max_steps)
 
