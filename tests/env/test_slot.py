@@ -85,7 +85,10 @@ def test_worlds_begin_again_where_time_or_everyone_is_over(alpha, max_steps):
             assert sum(late) <= left[i].sum()
             cut += any(late)
             extinct += not any(late)
-            last = [info["terminal_observation"].any() if done else over for info, done, over in zip(told, mine, late)]
+            last = [
+                info["terminal_observation"].any() if done else over
+                for info, done, over in zip(told, mine, late, strict=True)
+            ]
             assert last == late
         assert slots.group.alive.any(axis=1).all(), step
     assert (cut > 5, extinct > 5) == (bool(max_steps), not max_steps)
