@@ -1,14 +1,18 @@
 """A report on a run that has not finished says first of which steps its numbers are."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 from synthetic_run import INTERVAL, write_run
 from typer.testing import CliRunner
 
+from hedon.analysis.world.record import WorldRecord
 from hedon.cli.main import app
 from hedon.record.reader import open_run
 from hedon.report.analysis import analyze
+from hedon.report.page import narrow_intervals
 
 
 def test_a_killed_run_says_that_its_tables_are_of_two_moments(tmp_path: Path) -> None:
@@ -39,3 +43,18 @@ def test_a_run_whose_tables_end_together_names_one_step(tmp_path: Path, status: 
 
 def test_a_finished_run_needs_no_such_sentence(tmp_path: Path) -> None:
     assert not analyze([open_run(write_run(tmp_path / "a", intervals=3, snapshot=False))], ["food"]).unfinished
+
+
+def test_intervals_that_are_too_narrow_are_told() -> None:
+    """Where some of the worlds died out, and there are enough for an interval."""
+
+    def told(ends: list[int | None]) -> list[str]:
+        worlds = [cast(WorldRecord, SimpleNamespace(extinct_step=end)) for end in ends]
+        return narrow_intervals({"poor": worlds})
+
+    assert told([None, 100, None, None, 50]) == [
+        "2 of 5 worlds of poor died out, so intervals of its numbers alive are too narrow: with one world in five at 0 "
+        "they miss the mean in 24 % of cases with five worlds, in 11 % with ten."
+    ]
+    assert told([None, 100, None, None]) == []
+    assert told([None] * 5) == told([100] * 5) == []
