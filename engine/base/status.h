@@ -36,7 +36,8 @@ struct StatusText {
 
 /// For errors that no setting explains.
 inline constexpr const char* REPEAT =
-    "Run `hedon check RUN --fault`. If the fault does not happen again, the likely cause is bad memory in this machine.";
+    "Run `hedon check RUN --fault`. If the fault does not happen again, the likely cause is bad memory in this "
+    "machine.";
 
 inline constexpr StatusText STATUS_TEXT[] = {
     {"ok", "No error.", ""},

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from hedon.config import Config
 from hedon.config.schema.species import SpeciesConfig
@@ -51,6 +50,8 @@ def encounter_rates(
     if not len(start) or not sum(counts):
         return visits
     kind, sites = np.repeat(np.arange(len(places)), counts), np.vstack(places)
+    from scipy.spatial import KDTree  # takes a fifth of a second to load, and food that grows anywhere needs none
+
     tree, reach = KDTree(sites), own.body.radius + config.world.food_radius
     left = np.full((len(start), len(sites)), -_PAUSE - 1)  # when an agent last touched a place that it had visited
     middle = np.exp(1j * math.radians(own.sensor.mouth_center))
@@ -90,5 +91,7 @@ def gaps(config: Config, own: SpeciesConfig, scene: Floats) -> float:
         return 0.0
     wide = 2.0 * (own.body.radius + config.world.food_radius)
     mouth = wide * math.sin(math.radians(min(own.sensor.mouth_spread, 90.0)))
+    from scipy.spatial import KDTree
+
     tree = KDTree(scene)
     return float(tree.count_neighbors(tree, wide) - tree.count_neighbors(tree, mouth)) / len(scene)

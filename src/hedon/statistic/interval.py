@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.statistic.minimum import FOR_INTERVAL
 
@@ -52,6 +51,8 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL, within: 
     mean = float(known.mean())
     if known.size < FOR_INTERVAL:
         return Interval(mean, None, None, known.size)
+    from scipy import stats  # takes half a second to load, and many tables have no interval
+
     half = float(stats.t.ppf(0.5 + level / 2, known.size - 1) * known.std(ddof=1) / math.sqrt(known.size))
     return Interval(mean, max(mean - half, within[0]), min(mean + half, within[1]), known.size)
 
@@ -87,6 +88,8 @@ def share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, fl
     Returns:
         Lower and upper bound.
     """
+    from scipy import stats
+
     tail = 0.5 * (1.0 - level)
     low, high = (float(stats.beta.ppf(q, count + 0.5, of - count + 0.5)) for q in (tail, 1.0 - tail))
     return low if count else 0.0, high if count < of else 1.0
@@ -103,6 +106,8 @@ def exact_share_interval(count: int, of: int, level: float = LEVEL) -> tuple[flo
     Returns:
         Lower and upper bound.
     """
+    from scipy import stats
+
     found = stats.binomtest(count, of).proportion_ci(level, method="exact")
     return float(found.low), float(found.high)
 
@@ -136,6 +141,8 @@ def distance_interval(values: NDArray[np.float64], level: float = LEVEL) -> tupl
 
 
 def _scale_bounds(scale: float, degrees: int, level: float) -> tuple[float, float]:
+    from scipy import stats
+
     tail = 0.5 * (1.0 - level)
     low, high = (scale * math.sqrt(degrees / float(stats.chi2.ppf(q, degrees))) for q in (1.0 - tail, tail))
     return low, high
