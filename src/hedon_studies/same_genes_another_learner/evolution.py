@@ -1,0 +1,198 @@
+"""Part B: which weights of sight and food evolve under a slow and a fast learner, from the same founders.
+
+`python -m hedon_studies.same_genes_another_learner.evolution worlds RUN… --out FOLDER` reduces runs to two tables:
+`worlds.csv`, a row per world, and `living.parquet`, the genes of all who are alive at the end.
+`python -m hedon_studies.same_genes_another_learner.evolution tests FOLDER` prints the tests that expected.md names.
+"""
+
+import argparse
+import json
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+from scipy import stats
+
+from hedon.analysis import (
+    WorldRecord,
+    food_per_step,
+    last_living,
+    mean_alive,
+    mean_lifetime,
+    read_worlds,
+    standard_drift,
+)
+from hedon.record.reader import Run, open_run
+from hedon.statistic import LEVEL, holm, paired_contrast
+from hedon_studies.same_genes_another_learner.landscape import ACTION, FOOD, SIGHT
+
+ARMS = {"slow": 0.0003, "fast": 0.003}
+"""The learning rate of each arm."""
+WORLDS, LIVING = "worlds.csv", "living.parquet"
+
+Floats = NDArray[np.float64]
+
+
+def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
+    """What one world says about where its weights settled.
+
+    Args:
+        world: A world of `run`.
+        run: Its run, for the provenance.
+
+    Returns:
+        The arm and the seed; demography; per weight the mean of the living at the end and its score against neutral
+        walks down the same pedigree; revision, start and digests.
+    """
+    rate = world.own.learning.learning_rate
+    arm = next((name for name, value in ARMS.items() if math.isclose(value, rate, rel_tol=1e-6)), str(rate))
+    drift = standard_drift(world)
+    manifest = run.manifest
+    return {
+        "arm": arm,
+        "seed": world.seed,
+        "steps": world.last_step,
+        "extinct_step": world.extinct_step,
+        "alive_mean": mean_alive(world.population),
+        "mean_lifetime": mean_lifetime(world.agents),
+        "food_per_step": food_per_step(world.agents, world.food_kinds),
+        "generation": drift[0].generation if drift else None,
+        **{key: value for one in drift for key, value in ((one.weight, one.mean), (f"{one.weight}_score", one.score))},
+        "backend": manifest.sessions[-1].backend,
+        "hedon_version": manifest.hedon_version,
+        "git_revision": manifest.git_revision,
+        "started": manifest.sessions[0].started,
+        "config_digest": manifest.config_digest,
+        "world_digest": manifest.world_digests[manifest.seeds.index(world.seed)],
+    }
+
+
+def living(world: WorldRecord) -> pl.DataFrame:
+    """The genes of all who are alive at the end: the rows of `living.parquet` of one world."""
+    genes = last_living(world.agents, world.population).select(pl.col(world.weight_names).cast(pl.Float32))
+    rate = pl.lit(world.own.learning.learning_rate).alias("learning_rate")
+    return genes.select(rate, pl.lit(world.seed, pl.Int32).alias("seed"), pl.all())
+
+
+def reduce_runs(folders: Iterable[Path], out: Path) -> None:
+    """Writes the two tables of some runs.
+
+    Args:
+        folders: Of runs.
+        out: A folder, made if it is not there.
+    """
+    rows: list[dict[str, Any]] = []
+    genes: list[pl.DataFrame] = []
+    for folder in folders:
+        run = open_run(folder)
+        for world in read_worlds([run]):
+            rows.append(world_row(world, run))
+            genes.append(living(world))
+    out.mkdir(parents=True, exist_ok=True)
+    pl.DataFrame(rows, infer_schema_length=None).sort("arm", "seed").write_csv(out / WORLDS)
+    pl.concat(genes).write_parquet(out / LIVING, compression="zstd", compression_level=19)
+
+
+def pairs(worlds: pl.DataFrame) -> pl.DataFrame:
+    """The worlds of both arms by seed, without pairs of which one died out.
+
+    Args:
+        worlds: The rows of `worlds.csv`.
+
+    Returns:
+        One row per pair: "seed", and each weight with the suffixes `_slow` and `_fast`.
+    """
+    lived = worlds.filter(pl.col("extinct_step").is_null())
+    weights = [name for name in worlds.columns if f"{name}_score" in worlds.columns]
+    arms = [lived.filter(pl.col("arm") == arm).select("seed", pl.col(weights).name.suffix(f"_{arm}")) for arm in ARMS]
+    return arms[0].join(arms[1], on="seed").sort("seed")
+
+
+def direction(paired: pl.DataFrame, arm: str, gene: str = SIGHT) -> Floats:
+    """The direction of the mean evolved reward: the angle of (food, sight), 0 if only food is liked.
+
+    Args:
+        paired: Of `pairs`.
+        arm: "slow" or "fast".
+        gene: In place of sight: a neutral gene, as a control.
+
+    Returns:
+        One angle per pair [degrees].
+    """
+    return np.degrees(np.arctan2(paired[f"{gene}_{arm}"].to_numpy(), paired[f"{FOOD}_{arm}"].to_numpy()))
+
+
+def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
+    """The primary test and the secondary ones, in the order of expected.md.
+
+    Args:
+        worlds: The rows of `worlds.csv`.
+
+    Returns:
+        One row per test: "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test),
+        "p_sign_flip", and "p_holm", of the sign flips, since scores against drift have a largest value; null for the
+        primary test.
+    """
+    paired = pairs(worlds)
+    change = direction(paired, "fast") - direction(paired, "slow")
+    rows = [_row("primary: direction, fast less slow [degrees]", change)]
+    for gene in (SIGHT, FOOD):
+        difference = paired[f"{gene}_fast"] - paired[f"{gene}_slow"]
+        rows.append(_row(f"{gene}, fast less slow", difference.to_numpy()))
+    lived = worlds.filter(pl.col("extinct_step").is_null())
+    for arm in ARMS:
+        own = lived.filter(pl.col("arm") == arm)
+        rows += [_row(f"{gene}, {arm}, against drift [sd]", own[f"{gene}_score"].to_numpy()) for gene in (SIGHT, FOOD)]
+    corrected = [None, *holm([row["p_sign_flip"] for row in rows[1:]])]
+    return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
+
+
+def neutral_control(worlds: pl.DataFrame) -> list[str]:
+    """The neutral genes that the primary test, made with them in place of sight, would call different."""
+    paired = pairs(worlds)
+    names = [name for name in worlds.columns if name.startswith("neutral_") and not name.endswith("_score")]
+    tests = [_row(name, direction(paired, "fast", name) - direction(paired, "slow", name)) for name in names]
+    return [test["test"] for test in tests if test["low"] > 0 or test["high"] < 0]
+
+
+def _row(name: str, values: Floats) -> dict[str, Any]:
+    found = stats.ttest_1samp(values, 0.0)
+    bounds = found.confidence_interval(LEVEL)
+    return {
+        "test": name,
+        "worlds": len(values),
+        "effect": float(values.mean()),
+        "low": float(bounds.low),
+        "high": float(bounds.high),
+        "p": float(np.asarray(found)[1]),
+        "p_sign_flip": paired_contrast(np.zeros_like(values), values).p,
+    }
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Reduces runs to tables, or prints the tests of such tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    reduce = verbs.add_parser("worlds", help="reduce runs to worlds.csv and living.parquet")
+    reduce.add_argument("run", nargs="+", type=Path)
+    reduce.add_argument("--out", type=Path, required=True)
+    verbs.add_parser("tests", help="print the tests").add_argument("folder", type=Path)
+    given = parser.parse_args(arguments)
+    if given.verb == "worlds":
+        reduce_runs(given.run, given.out)
+        return
+    worlds = pl.read_csv(given.folder / WORLDS)
+    means = ["alive_mean", "mean_lifetime", "food_per_step", "generation", SIGHT, FOOD, ACTION]
+    with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=48, tbl_width_chars=160):
+        extinct = pl.col("extinct_step").is_not_null().sum().alias("extinct")
+        print(worlds.group_by("arm", maintain_order=True).agg(pl.len(), extinct, pl.col(means).mean()))
+        print(named_tests(worlds))
+    print("neutral genes called different:", json.dumps(neutral_control(worlds)), "of 16")
+
+
+if __name__ == "__main__":
+    main()
