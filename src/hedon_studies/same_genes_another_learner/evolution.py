@@ -26,7 +26,7 @@ from hedon.analysis import (
     read_worlds,
     standard_drift,
 )
-from hedon.record.reader import Run, open_run
+from hedon.record import Run, open_run
 from hedon.statistic import LEVEL, holm, paired_contrast
 from hedon_studies.same_genes_another_learner.landscape import ACTION, FOOD, SIGHT
 
