@@ -17,9 +17,6 @@ from .gene.weight import end_mean as end_mean
 from .gene.weight import last_agents as last_agents
 from .gene.weight import last_living as last_living
 from .gene.weight import last_mean as last_mean
-from .response import RESPONSES as RESPONSES
-from .response import Common as Common
-from .response import Response as Response
 from .result import ResultTable as ResultTable
 from .result import make_table as make_table
 from .topic.life import lifetime as lifetime

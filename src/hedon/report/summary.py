@@ -6,47 +6,26 @@ summed over all of them is called a total.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import polars as pl
 
-from hedon.analysis.agent.food import food_per_agent_step, food_per_step
+from hedon.analysis.agent.food import food_per_step
 from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
-from hedon.analysis.gene.weight import LAST_AGENTS, last_living, weight_spreads
+from hedon.analysis.gene.weight import last_living, weight_spreads
 from hedon.analysis.world.ledger import world_ledger
-from hedon.analysis.world.population import alive_after_extinction, last_generation, mean_alive, mean_energy, run_tail
-from hedon.analysis.world.record import born_since, gone_step
-from hedon.analysis.world.species import Kind, by_species, kinds
+from hedon.analysis.world.record import WorldRecord, read_worlds
+from hedon.measure.catalogue import MEASURES
 from hedon.record.reader import Run
 from hedon.statistic.interval import AMOUNT, mean_interval
 from hedon.study.catalogue import reported_figures
 
-_OVER_WORLDS = {
-    "mean_lifetime": "mean_lifetime",
-    "food_per_step": "food_per_step",
-    "food_per_agent_step": "food_per_agent_step",
-    "alive": "alive_mean",
-    "mean_energy": "mean_energy",
-    "generation": "generation",
-}
-_HUNTS = {"prey_per_step": "prey_per_step", "prey_per_agent_step": "prey_per_agent_step"}
-"""The same, in runs where agents eat agents."""
 _COUNTS = ("births", "deaths", "births_failed_full", "births_failed_space")
-_CAUSES = ("deaths_starved", "deaths_eaten")
-"""Columns of runs where agents die of more than age and energy."""
 
 Fare = Mapping[str, Any]
-
-
-@dataclass(frozen=True)
-class _Species:
-    """One species of a run: what it eats and inherits, and its rows of both tables."""
-
-    kind: Kind
-    agents: pl.DataFrame
-    population: pl.DataFrame
+"""How one species fares in a world."""
 
 
 def summarize(run: Run) -> dict[str, Any]:
@@ -59,15 +38,24 @@ def summarize(run: Run) -> dict[str, Any]:
         `summary_key`.
 
     Raises:
-        ConfigError: the run has several species, and its config cannot be read.
+        ConfigError: The run's config cannot be read.
     """
     run = run.load()
-    agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
-    parts = _by_species(run, agents, population)
-    fares = {name: _fares(run, part) for name, part in parts.items()}
-    worlds = [_world(run, index, population, fares) for index in range(len(run.manifest.seeds))]
+    return summarize_worlds(run, read_worlds([run]))
+
+
+def summarize_worlds(run: Run, records: Sequence[WorldRecord]) -> dict[str, Any]:
+    """The summary of a run whose worlds are read already.
+
+    Args:
+        run: That is summed up.
+        records: All its worlds, one record for each species.
+    """
+    species = {name: [each for each in records if each.species == name] for name in (r.species for r in records)}
+    fares = {name: [_fare(world) for world in own] for name, own in species.items()}
+    worlds = [_world(run, index, {name: own[index] for name, own in species.items()}, fares) for index in _indices(run)]
     manifest = run.manifest
-    means = {name: _means(run, parts[name], fares[name]) for name in parts}
+    means = {name: _means(species[name], fares[name]) for name in species}
     summary = {
         "name": manifest.name,
         "preset": manifest.preset,
@@ -81,7 +69,7 @@ def summarize(run: Run) -> dict[str, Any]:
         "seeds": manifest.seeds,
         "steps_asked": manifest.steps_asked,
         "steps": sum(world["steps"] for world in worlds),
-        **(_several(agents, worlds, means) if run.columns.several else next(iter(means.values()))),
+        **(_several(records, worlds, means) if run.columns.several else next(iter(means.values()))),
         "reported": reported_figures(manifest.preset) if manifest.modified is False else {},
         "damaged_parts": [str(path.relative_to(run.path)) for path in run.damaged_parts()],
         "worlds": worlds,
@@ -102,51 +90,53 @@ def plain(value: Any) -> Any:
     return value
 
 
-def _by_species(run: Run, agents: pl.DataFrame, population: pl.DataFrame) -> dict[str, _Species]:
-    config = run.config if run.columns.several else None
-    lives, rows = by_species(agents, run.columns), by_species(population, run.columns)
-    return {name: _Species(kind, lives[name], rows[name]) for name, kind in kinds(run.columns, config).items()}
+def _indices(run: Run) -> range:
+    return range(len(run.manifest.seeds))
 
 
-def _several(agents: pl.DataFrame, worlds: Sequence[Fare], means: Mapping[str, Fare]) -> dict[str, Any]:
+def _several(records: Sequence[WorldRecord], worlds: Sequence[Fare], means: Mapping[str, Fare]) -> dict[str, Any]:
     """What the summary of several species has in place of the means of one."""
     alive = mean_interval((world["total"]["alive_mean"] for world in worlds), within=AMOUNT)
     return {
         "extinct_worlds": sum(world["extinct"] for world in worlds),
-        "total": {"agents": agents.height, "alive": asdict(alive)},
+        "total": {"agents": sum(record.agents.height for record in records), "alive_mean": asdict(alive)},
         "species": means,
     }
 
 
-def _means(run: Run, part: _Species, fares: Sequence[Fare]) -> dict[str, Any]:
+def _means(worlds: Sequence[WorldRecord], fares: Sequence[Fare]) -> dict[str, Any]:
     """The numbers of one species over all worlds."""
-    surviving = [fare for fare in fares if not fare["extinct"]]
+    surviving = [not fare["extinct"] for fare in fares]
+    agents = pl.concat([world.agents for world in worlds])
+    born = pl.concat([world.born for world in worlds])
     return {
-        "agents": part.agents.height,
-        "extinct_worlds": len(fares) - len(surviving),
-        **_over_worlds(run, part, fares),
+        "agents": agents.height,
+        "extinct_worlds": len(fares) - sum(surviving),
+        **_over_worlds(worlds[0], fares),
         "pooled": {
-            "agents": dead_agents(_born(run, part.agents)).height,
-            "mean_lifetime": mean_lifetime(_born(run, part.agents)),
-            "food_per_step": food_per_step(part.agents, part.kind.foods),
+            "agents": dead_agents(born).height,
+            "mean_lifetime": mean_lifetime(born),
+            "food_per_step": food_per_step(agents, worlds[0].food_kinds),
         },
-        "surviving": _over_worlds(run, part, surviving),
+        "surviving": _over_worlds(worlds[0], [fare for fare, lives in zip(fares, surviving, strict=True) if lives]),
     }
 
 
-def _over_worlds(run: Run, part: _Species, fares: Sequence[Fare]) -> dict[str, Any]:
-    wanted = _OVER_WORLDS | (_HUNTS if run.columns.prey else {})
-    intervals = {key: mean_interval((fare[source] for fare in fares), within=AMOUNT) for key, source in wanted.items()}
-    weights = {name: mean_interval(fare["weights"][name]["mean"] for fare in fares) for name in part.kind.genes}
+def _over_worlds(world: WorldRecord, fares: Sequence[Fare]) -> dict[str, Any]:
+    averaged = [each for each in MEASURES.values() if each.averaged and each.applies(world)]
+    intervals = {each.name: mean_interval((fare[each.name] for fare in fares), within=each.within) for each in averaged}
+    weights = {name: mean_interval(fare["weights"][name]["mean"] for fare in fares) for name in world.weight_names}
     return {
-        **{key: asdict(interval) for key, interval in intervals.items()},
+        **{name: asdict(interval) for name, interval in intervals.items()},
         "weights": {name: asdict(interval) for name, interval in weights.items()},
     }
 
 
-def _world(run: Run, index: int, population: pl.DataFrame, fares: Mapping[str, Sequence[Fare]]) -> dict[str, Any]:
-    rows, manifest = population.filter(pl.col("world") == index), run.manifest
-    recorded = int(rows["step"].to_numpy().max()) if rows.height else 0
+def _world(
+    run: Run, index: int, species: Mapping[str, WorldRecord], fares: Mapping[str, Sequence[Fare]]
+) -> dict[str, Any]:
+    manifest, rows = run.manifest, [world.population for world in species.values()]
+    recorded = max(int(table["step"].to_numpy().max(initial=0)) for table in rows)
     steps = max(recorded, manifest.steps_done[index] if manifest.steps_done else 0)
     made = steps - (manifest.parent.step if manifest.parent else 0)
     begin = {
@@ -158,6 +148,7 @@ def _world(run: Run, index: int, population: pl.DataFrame, fares: Mapping[str, S
     if not run.columns.several:
         return begin | dict(next(iter(mine.values())))
     extinct = all(fare["extinct"] for fare in mine.values())
+    meals = (*run.food_kinds, *run.columns.prey)
     return begin | {
         "extinct": extinct,
         "extinct_step": max(fare["extinct_step"] for fare in mine.values()) if extinct else None,
@@ -165,55 +156,20 @@ def _world(run: Run, index: int, population: pl.DataFrame, fares: Mapping[str, S
             "alive": sum(fare["alive"] for fare in mine.values()),
             "alive_mean": _sum(fare["alive_mean"] for fare in mine.values()),
             **{name: sum(fare[name] for fare in mine.values()) for name in _COUNTS},
-            "eaten": {meal: rows[f"eaten_{meal}"].sum() for meal in (*run.food_kinds, *run.columns.prey)},
+            "eaten": {meal: sum(int(table[f"eaten_{meal}"].sum()) for table in rows) for meal in meals},
         },
         "species": mine,
     }
 
 
-def _fares(run: Run, part: _Species) -> list[Fare]:
-    """How a species fares in each world of a run."""
-    return [_fare(run, part, index) for index in range(len(run.manifest.seeds))]
-
-
-def _born(run: Run, agents: pl.DataFrame) -> pl.DataFrame:
-    """Those of a branch that were born in it; see `born_since`."""
-    return born_since(agents, run.manifest.parent.step if run.manifest.parent else 0)
-
-
-def _fare(run: Run, part: _Species, index: int) -> Fare:
-    # In one piece: sums must not depend on the parts in which rows were written.
-    agents, population = (table.filter(pl.col("world") == index).rechunk() for table in (part.agents, part.population))
-    tail, foods, prey = run_tail(population), part.kind.foods, part.kind.prey
-    extinct = gone_step(run, index, agents, population)
-    alive = population["alive"][-1] if population.height else agents["death_step"].null_count()
-    hunts = {"prey_per_step": food_per_step(agents, prey), "prey_per_agent_step": food_per_agent_step(population, prey)}
+def _fare(world: WorldRecord) -> Fare:
+    living = last_living(world.agents, world.population)
     return {
-        "alive": alive,
-        "alive_mean": mean_alive(tail) if extinct is None else alive_after_extinction(population, _end(run)),
-        "extinct": extinct is not None,
-        "extinct_step": extinct,
-        **{name: population[name].sum() for name in (*_COUNTS, *_CAUSES) if name in population.columns},
-        "mean_lifetime": mean_lifetime(_born(run, agents)),
-        "mean_lifetime_born": mean_lifetime(_born(run, agents), born_in_run=True),
-        "mean_lifetime_last": mean_lifetime(_born(run, agents), last=LAST_AGENTS),
-        "food_per_step": food_per_step(agents, foods),
-        "food_per_agent_step": food_per_agent_step(population, foods),
-        **(hunts if run.columns.prey else {}),
-        "eaten": {meal: population[f"eaten_{meal}"].sum() for meal in (*foods, *prey)},
-        "mean_energy": mean_energy(tail) if extinct is None else None,
-        "generation": last_generation(population),
-        "weights": weight_spreads(last_living(agents, population), part.kind.genes),
-        "ledger": world_ledger(population, agents),
+        **{measure.name: measure.of(world) for measure in MEASURES.values() if measure.applies(world)},
+        "eaten": {meal: world.population[f"eaten_{meal}"].sum() for meal in (*world.food_kinds, *world.prey)},
+        "weights": weight_spreads(living, world.weight_names),
+        "ledger": world_ledger(world.population, world.agents),
     }
-
-
-def _end(run: Run) -> int:
-    """Up to which step all worlds of a run were to go, or have gone so far; at least 1."""
-    manifest = run.manifest
-    longest = max(manifest.steps_done, default=0)
-    recorded = run.population(skip_damaged=True)["step"].to_numpy().max(initial=0)
-    return max(manifest.steps_asked if manifest.status == "finished" else max(longest, int(recorded)), 1)
 
 
 def _sum(values: Iterable[float | None]) -> float | None:

@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from hedon.analysis.response import Response, common_to, figures
+from hedon.measure.measure import Measure
+from hedon.measure.response import at_common_age, common_age, values
 from hedon.statistic.interval import Interval, mean_interval
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.study.census import missing, sentences
@@ -11,48 +12,44 @@ from hedon.study.item import Condition, ItemInputs, Scale
 
 
 def world_rows(
-    inputs: ItemInputs, conditions: Sequence[Condition], responses: Sequence[Response]
+    inputs: ItemInputs, conditions: Sequence[Condition], measures: Sequence[Measure]
 ) -> list[dict[str, Any]]:
     """One row per world, in the order of the conditions.
 
     Args:
         inputs: with the worlds that there are.
         conditions: of the study.
-        responses: what is measured of each world.
+        measures: what is measured of each world.
 
     Returns:
-        Columns condition (its label), seed, steps, died_out, one per response, and until, the age up to which
+        Columns condition (its label), seed, steps, died_out, one per measure, and until, the age up to which
         lifetimes are averaged where the living are counted [step].
     """
-    common = common_to(world for condition in conditions for world in inputs.worlds.get(condition.label, ()))
+    there = [(each.label, world) for each in conditions for world in inputs.worlds.get(each.label, ())]
+    until = common_age(world for _, world in there)
+    asked = at_common_age(measures, until)
     return [
-        {
-            "condition": condition.label,
-            "seed": world.seed,
-            "steps": world.last_step,
-            "died_out": world.extinct_step is not None,
-        }
-        | figures(world, common, responses)
-        | {"until": common.until}
-        for condition in conditions
-        for world in inputs.worlds.get(condition.label, ())
+        {"condition": label, "seed": world.seed, "steps": world.last_step, "died_out": world.extinct_step is not None}
+        | values(world, asked)
+        | {"until": until}
+        for label, world in there
     ]
 
 
-def shown_interval(values: Sequence[float | None], response: Response | None = None) -> Interval:
+def shown_interval(values: Sequence[float | None], measure: Measure | None = None) -> Interval:
     """Mean and interval over worlds, without bounds below five worlds.
 
     Args:
         values: one per world; None is left out.
-        response: that they are of, so that the mean of what is compared as a ratio is geometric; None for the plain
+        measure: that they are of, so that the mean of what is compared as a ratio is geometric; None for the plain
             mean.
     """
     known = [value for value in values if value is not None]
-    if response is None or not response.ratio:
+    if measure is None or not measure.ratio:
         found = mean_interval(known)
     else:
-        logs = mean_interval([response.scaled(value) for value in known])
-        mean, low, high = (response.unscaled(number) for number in (logs.mean, logs.low, logs.high))
+        logs = mean_interval([measure.scaled(value) for value in known])
+        mean, low, high = (measure.unscaled(number) for number in (logs.mean, logs.low, logs.high))
         found = Interval(mean, low, high, logs.worlds)
     return found if found.worlds >= FOR_INTERVAL else Interval(found.mean, None, None, found.worlds)
 
@@ -71,33 +68,33 @@ def read_change(before: str, after: str) -> str:
     )
 
 
-def change(rows: Sequence[dict[str, Any]], response: Response, before: str, after: str) -> Iterator[dict[str, Any]]:
-    """One response of two conditions and its change seed by seed, where both conditions or one of them have it.
+def change(rows: Sequence[dict[str, Any]], measure: Measure, before: str, after: str) -> Iterator[dict[str, Any]]:
+    """One measure of two conditions and its change seed by seed, where both conditions or one of them have it.
 
     Args:
         rows: of `world_rows`.
-        response: one of those that the rows hold.
+        measure: one of those that the rows hold.
         before: label of the condition that the change is against.
         after: label of the condition that is changed.
     """
     by_condition = {
-        label: {row["seed"]: row[response.name] for row in rows if row["condition"] == label}
+        label: {row["seed"]: row[measure.name] for row in rows if row["condition"] == label}
         for label in (before, after)
     }
-    means = {label: shown_interval(list(values.values()), response).mean for label, values in by_condition.items()}
+    means = {label: shown_interval(list(values.values()), measure).mean for label, values in by_condition.items()}
     if all(mean is None for mean in means.values()):
         return
     changes = [
-        response.scaled(value) - response.scaled(old)
+        measure.scaled(value) - measure.scaled(old)
         for seed, value in by_condition[after].items()
         if value is not None and (old := by_condition[before].get(seed)) is not None
     ]
     found = shown_interval(changes)
-    low, high = (found.low, found.high) if response.sure else (None, None)
+    low, high = (None, None) if measure.binary else (found.low, found.high)
     values = {"change": found.mean, "low": low, "high": high}
     values |= {"change_low": min(changes, default=None), "change_high": max(changes, default=None)}
-    head = {"response": response.name} | means | {"scale": "ratio" if response.ratio else "difference"}
-    yield head | {name: response.unscaled(value) for name, value in values.items()} | {"seeds": len(changes)}
+    head = {"measure": measure.name} | means | {"scale": "ratio" if measure.ratio else "difference"}
+    yield head | {name: measure.unscaled(value) for name, value in values.items()} | {"seeds": len(changes)}
 
 
 def missing_note(inputs: ItemInputs, conditions: Sequence[Condition], scale: Scale) -> str:

@@ -8,19 +8,11 @@ from itertools import pairwise
 import polars as pl
 
 from hedon.config.problem import nearest
-from hedon.statistic.interval import AMOUNT, ANY, Interval, mean_interval, share_interval
+from hedon.measure.catalogue import column_measure
+from hedon.statistic.interval import ANY, Interval, mean_interval, share_interval
 from hedon.sweep.error import SweepError
 from hedon.sweep.row import KEYS
 
-TITLES = {
-    "extinct": "share of worlds extinct",
-    "alive_mean": "agents alive, last tenth",
-    "mean_energy": "mean energy, last tenth",
-    "food_per_agent_step": "food per agent and step",
-    "prey_per_agent_step": "agents eaten per agent and step",
-    "mean_lifetime": "lifetime of the dead [step]",
-}
-"""Responses that every report has, by column, and what they are called; where there are several species, of each."""
 BINS = 8
 """Most groups of neighboring values for which means are shown, where every world has a value of its own."""
 
@@ -56,22 +48,9 @@ def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str])
             near = nearest(name, fit)
             hint = f"; did you mean {near}?" if near else f" (there are {', '.join(fit)})"
             raise SweepError(f"--only: {name!r} is not a column of numbers of the table{hint}")
-    usual = {name: title for key in TITLES for name in fit if (title := _title(name, key))}
-    usual |= {name: title for name in fit if (title := _weight_title(name))}
-    return {name: usual.get(name, name) for name in asked} if asked else usual
-
-
-def _title(column: str, key: str) -> str:
-    """What a column of one of the `TITLES` is called, with its species if it names one; empty for other columns."""
-    species, _, name = column.rpartition(".")
-    return f"{TITLES[key]}{f': {species}' if species else ''}" if name == key else ""
-
-
-def _weight_title(column: str) -> str:
-    """The same for the mean of a weight."""
-    species, _, name = column.rpartition(".")
-    is_weight = name.startswith("w_") and name.endswith("_mean")
-    return f"mean of {name.removesuffix('_mean')}{f': {species}' if species else ''}" if is_weight else ""
+    known = {name: found for name in fit if (found := column_measure(name))}
+    shown = asked or [name for name, found in known.items() if found.usual]
+    return {name: known[name].title if name in known else name for name in shown}
 
 
 def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[Point]:
@@ -109,8 +88,8 @@ def _response_interval(table: pl.DataFrame, response: str) -> Interval:
     """Mean over worlds: Student's t interval; of yes and no a share, with Jeffreys' interval."""
     known = table[response].drop_nulls()
     if known.dtype != pl.Boolean:
-        is_amount = any(_title(response, key) for key in TITLES)
-        return mean_interval(known.cast(pl.Float64).to_list(), within=AMOUNT if is_amount else ANY)
+        measure = column_measure(response)
+        return mean_interval(known.cast(pl.Float64).to_list(), within=measure.within if measure else ANY)
     if not len(known):
         return Interval(None, None, None, 0)
     count = int(known.sum())

@@ -7,8 +7,9 @@ bounds says that it does not matter; one that reaches beyond leaves it open.
 
 from collections.abc import Iterator
 
-from hedon.analysis import RESPONSES, ResultTable, history, make_table
+from hedon.analysis import ResultTable, history, make_table
 from hedon.figure import NamedFigure, draw_courses
+from hedon.measure import RESPONSES
 from hedon.study import (
     Condition,
     Item,
@@ -59,7 +60,7 @@ def make_acting(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     yield make_table(
         "acting",
         "Acting by weights of 32 and of 16 bits",
-        [row for response in RESPONSES for row in change(rows, response, FULL, HALF)],
+        [row for measure in RESPONSES for row in change(rows, measure, FULL, HALF)],
         sentences(read_change(FULL, HALF), missing),
     )
     yield make_table("acting_worlds", "The worlds of the study of acting", rows, missing, shown=False)

@@ -13,15 +13,11 @@ from scipy import optimize
 from hedon.analysis import (
     LAST_AGENTS,
     WorldRecord,
-    food_per_step,
-    last_generation,
     last_mean,
-    mean_alive,
-    mean_lifetime,
-    run_tail,
     standard_drift,
 )
 from hedon.demography import cumulative_hazard
+from hedon.measure import MEASURES
 from hedon.study import Claim, Condition
 from hedon_studies.kanagawa_doya_2024.extinction import CONDITIONS
 from hedon_studies.kanagawa_doya_2024.paper import (
@@ -66,11 +62,6 @@ def score(weight: str, world: WorldRecord) -> float | None:
     return next((found.score for found in standard_drift(world, LAST_AGENTS) if found.weight == weight), None)
 
 
-def lifetime_of_dead(world: WorldRecord) -> float | None:
-    """Mean lifetime of the dead [step]."""
-    return mean_lifetime(world.agents)
-
-
 def _above(limit: float, weight: str, world: WorldRecord) -> float | None:
     mean = last_mean(weight, world)
     return None if mean is None else mean - limit
@@ -84,18 +75,6 @@ def _below(weight: str, other: str, world: WorldRecord) -> float | None:
 def _negative(weight: str, world: WorldRecord) -> float | None:
     mean = last_mean(weight, world)
     return None if mean is None else -mean
-
-
-def _food(world: WorldRecord) -> float | None:
-    return food_per_step(world.agents, world.food_kinds)
-
-
-def _alive(world: WorldRecord) -> float | None:
-    return mean_alive(run_tail(world.population))
-
-
-def _generation(world: WorldRecord) -> float | None:
-    return last_generation(world.population)
 
 
 def _extinct(world: WorldRecord) -> float | None:
@@ -150,16 +129,16 @@ def _weight_claims() -> Iterator[Claim]:
 def _table_claims() -> Iterator[Claim]:
     for preset, figures in PAPER.items():
         for name, value, measure, unit, factor in (
-            ("mean lifetime", figures.mean_lifetime, lifetime_of_dead, "step", SAME_LIFETIME),
-            ("food per step", figures.food_per_step, _food, "1/step", SAME_FACTOR),
+            ("mean lifetime", figures.mean_lifetime, MEASURES["mean_lifetime"].of, "step", SAME_LIFETIME),
+            ("food per step", figures.food_per_step, MEASURES["food_per_step"].of, "1/step", SAME_FACTOR),
         ):
             if value is not None:
                 text = f"{name} [{unit}], within a factor of {factor:g}"
                 low, high = value / factor, value * factor
                 yield _claim(name, _about(preset), text, measure, "ratio", f"{value:g}", low, high)
         for name, bounds, measure in (
-            ("population", figures.population, _alive),
-            ("generation", figures.generation, _generation),
+            ("population", figures.population, MEASURES["alive_mean"].of),
+            ("generation", figures.generation, MEASURES["generation"].of),
         ):
             if bounds is not None:
                 text = f"{name} at the end, {bounds[0]} to {bounds[1]}"

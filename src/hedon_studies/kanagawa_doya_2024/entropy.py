@@ -4,8 +4,9 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from hedon.analysis import RESPONSES, Response, ResultTable, WorldRecord, history, make_table
+from hedon.analysis import ResultTable, WorldRecord, history, make_table
 from hedon.figure import NamedFigure
+from hedon.measure import RESPONSES, Measure
 from hedon.study import (
     Condition,
     Item,
@@ -29,10 +30,11 @@ CONDITIONS = (
     Condition(WITHOUT, overrides=("learning.entropy_coef=0.0",), fidelity="corrected"),
 )
 SCALE = Scale((1, 2), 1_024_000)
-_HALF_WAY = Response(
+_HALF_WAY = Measure(
     "half_way_weight",
     "weight of food at which agents eat half-way to the best",
-    lambda world, _: half_way_weight(appetite(world)),
+    "weight of food at which agents eat half-way between those with negative weights and those of the best bin",
+    lambda world: half_way_weight(appetite(world)),
 )
 _ASKED = (*RESPONSES, _HALF_WAY)
 
@@ -66,7 +68,7 @@ def make_entropy(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     yield make_table(
         "entropy",
         "With and without the bonus for entropy",
-        [row for response in _ASKED for row in change(rows, response, WITH, WITHOUT)],
+        [row for measure in _ASKED for row in change(rows, measure, WITH, WITHOUT)],
         sentences(_DIFFERENCE, missing),
     )
     eaten = [

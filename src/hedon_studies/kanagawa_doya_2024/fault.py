@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from hedon.analysis import RESPONSES, Response, ResultTable, make_table
+from hedon.analysis import ResultTable, make_table
 from hedon.figure import NamedFigure
+from hedon.measure import RESPONSES, Measure
 from hedon.statistic import Cell, FactorialFit, Factors, all_effects, fit_factorial
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, sentences, shown_interval, world_rows
 from hedon_studies.kanagawa_doya_2024.figure.factorial import draw_cells, draw_effects
@@ -19,8 +20,15 @@ FACTORS = {
 in no cell."""
 
 SCALE = Scale((1, 2, 3), 512_000)
-_MAIN = ("alive", "restricted_lifetime", "food_step", "w_food", "w_action", "neutral")
-_SHOWN = tuple(response for response in RESPONSES if response.name in _MAIN)
+_MAIN = (
+    "alive_mean",
+    "restricted_lifetime",
+    "food_per_agent_step",
+    "w_normal_last",
+    "w_action_last",
+    "neutral_1_last",
+)
+_SHOWN = tuple(measure for measure in RESPONSES if measure.name in _MAIN)
 
 _EFFECT = (
     "A main effect is the mean of the eight cells with a fault minus the mean of the eight without; an interaction "
@@ -28,7 +36,7 @@ _EFFECT = (
     "but one with that one minus without it (coding ±1/2, products of columns; cells count alike). Lifetimes and rates "
     "of food are compared by their logarithms, so effects are ratios and interactions ratios of ratios. Intervals and "
     "p: Student's t with the variance of each cell's worlds and Satterthwaite's degrees of freedom (Welch), where each "
-    "cell has three worlds or all have equally many; p_holm is corrected for all effects on one response. seed_low and "
+    "cell has three worlds or all have equally many; p_holm is corrected for all effects on one measure. seed_low and "
     "seed_high are the least and largest of the "
     "same effect within single seeds."
 )
@@ -72,12 +80,12 @@ def make_faults(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """The figures and tables of the study."""
     rows = world_rows(inputs, CONDITIONS, RESPONSES)
     missing = missing_note(inputs, CONDITIONS, SCALE)
-    fits = {response.name: _fit(rows, response) for response in RESPONSES}
-    rows_of_effects = {response.name: list(_effect_rows(response, fits[response.name])) for response in RESPONSES}
+    fits = {measure.name: _fit(rows, measure) for measure in RESPONSES}
+    rows_of_effects = {measure.name: list(_effect_rows(measure, fits[measure.name])) for measure in RESPONSES}
     effects = make_table(
         "fault_effects",
         "Effects of the released code's faults",
-        [row for response in _SHOWN for row in rows_of_effects[response.name]],
+        [row for measure in _SHOWN for row in rows_of_effects[measure.name]],
         sentences(_EFFECT, _missing_effects(fits), missing),
     )
     worlds = make_table("fault_worlds", "The worlds of the study of faults", rows, missing, shown=False)
@@ -109,28 +117,28 @@ def effect_name(factors: Factors) -> str:
     return " \N{MULTIPLICATION SIGN} ".join(names[i] for i in factors)
 
 
-def _fit(rows: list[dict[str, Any]], response: Response) -> FactorialFit:
+def _fit(rows: list[dict[str, Any]], measure: Measure) -> FactorialFit:
     cells: dict[Cell, dict[int, float]] = {}
     for row in rows:
-        if row[response.name] is not None:
-            cells.setdefault(CELLS[row["condition"]], {})[row["seed"]] = response.scaled(row[response.name])
+        if row[measure.name] is not None:
+            cells.setdefault(CELLS[row["condition"]], {})[row["seed"]] = measure.scaled(row[measure.name])
     return fit_factorial(cells, len(FACTORS))
 
 
-def _effect_rows(response: Response, fit: FactorialFit) -> Iterator[dict[str, Any]]:
+def _effect_rows(measure: Measure, fit: FactorialFit) -> Iterator[dict[str, Any]]:
     for effect in fit.effects:
         known = {name: getattr(effect, name) for name in ("low", "high", "p", "p_holm")}
-        bounds = known if response.sure else dict.fromkeys(known)
+        bounds = dict.fromkeys(known) if measure.binary else known
         values = {"estimate": effect.estimate} | bounds
         values |= {"seed_low": effect.seed_low, "seed_high": effect.seed_high}
         for name in ("estimate", "low", "high", "seed_low", "seed_high"):
-            values[name] = response.unscaled(values[name])
-        head = {"response": response.name, "effect": effect_name(effect.factors)}
-        yield head | {"scale": "ratio" if response.ratio else "difference"} | values | {"seeds": effect.seeds}
+            values[name] = measure.unscaled(values[name])
+        head = {"measure": measure.name, "effect": effect_name(effect.factors)}
+        yield head | {"scale": "ratio" if measure.ratio else "difference"} | values | {"seeds": effect.seeds}
 
 
 def _missing_effects(fits: Mapping[str, FactorialFit]) -> str:
-    """Names what could not be estimated, and what only without interactions; responses with the same gaps together."""
+    """Names what could not be estimated, and what only without interactions; measures with the same gaps together."""
     gaps: dict[str, list[str]] = {}
     for name, fit in fits.items():
         narrow = [effect_name(effect.factors) for effect in fit.effects if effect.order < len(FACTORS)]
@@ -139,7 +147,7 @@ def _missing_effects(fits: Mapping[str, FactorialFit]) -> str:
         if parts:
             gaps.setdefault(" and ".join(parts), []).append(name)
     told = [
-        f"Since cells are missing, {gap} (of {'all responses' if len(names) == len(fits) else ', '.join(names)})."
+        f"Since cells are missing, {gap} (of {'all measures' if len(names) == len(fits) else ', '.join(names)})."
         for gap, names in gaps.items()
     ]
     return " ".join(told)
@@ -150,7 +158,7 @@ def _cell_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     for label in CELLS:
         mine = [row for row in rows if row["condition"] == label]
         if mine:
-            means = {r.name: shown_interval([row[r.name] for row in mine], r).mean for r in RESPONSES if r.sure}
+            means = {r.name: shown_interval([row[r.name] for row in mine], r).mean for r in RESPONSES if not r.binary}
             results.append(
                 {"condition": label, "worlds": len(mine), "died_out": sum(row["died_out"] for row in mine)} | means
             )

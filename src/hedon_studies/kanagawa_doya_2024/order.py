@@ -10,8 +10,9 @@ from functools import partial
 from typing import Any
 
 from hedon.analysis import last_mean
+from hedon.measure import MEASURES
 from hedon.study import Condition, Order
-from hedon_studies.kanagawa_doya_2024.claim import SOURCE, WEIGHTS, lifetime_of_dead
+from hedon_studies.kanagawa_doya_2024.claim import SOURCE, WEIGHTS
 from hedon_studies.kanagawa_doya_2024.paper import PAPER, STEPS
 
 MUCH = 3.0
@@ -37,9 +38,8 @@ def _orders() -> Iterator[Order]:
         times = "longer" if factor == 1.0 else f"at least {factor:g} times as long"
         text = f"agents live {times} in the condition {first} than in {second}"
         ratio = (PAPER[first].mean_lifetime or math.nan) / (PAPER[second].mean_lifetime or math.nan)
-        yield _order(
-            "longer lifetime", first, second, text, lifetime_of_dead, "ratio", f"{ratio:.3g} times", low=factor
-        )
+        lifetime, reported = MEASURES["mean_lifetime"].of, f"{ratio:.3g} times"
+        yield _order("longer lifetime", first, second, text, lifetime, "ratio", reported, low=factor)
     for second in ("baseline", "large"):
         for weight, name in WEIGHTS.items():
             text = f"the weight of {name} varies less between worlds of the small arena than in {second}"

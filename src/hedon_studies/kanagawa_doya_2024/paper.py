@@ -76,6 +76,6 @@ def reported() -> dict[str, dict[str, Any]]:
     known = {preset: {"steps": STEPS} | {k: v for k, v in asdict(f).items() if v} for preset, f in PAPER.items()}
     for figures in known.values():
         if "population" in figures:
-            figures["alive"] = figures.pop("population")
+            figures["alive_mean"] = figures.pop("population")
     known["baseline"]["ends"] = ENDS
     return known

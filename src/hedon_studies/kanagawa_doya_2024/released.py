@@ -5,8 +5,9 @@ from typing import Any
 
 import polars as pl
 
-from hedon.analysis import RESPONSES, ResultTable, WorldRecord, drift_genes, last_agents, make_table
+from hedon.analysis import ResultTable, WorldRecord, drift_genes, last_agents, make_table
 from hedon.figure import NamedFigure, draw_weights
+from hedon.measure import RESPONSES
 from hedon.statistic import share_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, shown_interval, world_rows
 from hedon_studies.kanagawa_doya_2024.analysis.fate import EXTINCT, FATES, HEADING, STANDING, Fate, fate
@@ -20,8 +21,8 @@ SCALE = Scale(tuple(range(1, 13)), 1_024_000)
 
 _PAPER_COSTS = (0.001, 2e-5)
 _GROUPS = {"all": FATES, "not extinct": (STANDING, HEADING), STANDING: (STANDING,)}
-_COMPARED = ("w_food", "w_action", "lifetime", "food_agent", "alive", "generation")
-"""Responses that the paper says something of."""
+_COMPARED = ("w_normal_last", "w_action_last", "mean_lifetime", "food_per_step", "alive_mean", "generation")
+"""Measures that the paper says something of."""
 
 _DRAWN = "A line per world; a cross ends that of a world whose record ends before the longest."
 _WEIGHTS = (
@@ -90,25 +91,25 @@ def _fate_rows(fates: Sequence[Fate]) -> Iterator[dict[str, Any]]:
 
 
 def _survivor_rows(rows: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
-    responses = {response.name: response for response in RESPONSES}
+    measures = {measure.name: measure for measure in RESPONSES}
     for name in _COMPARED if rows else ():
         for group, belonging in _GROUPS.items():
             values = [row[name] for row in rows if row["fate"] in belonging]
-            found = vars(shown_interval(values, responses[name]))
+            found = vars(shown_interval(values, measures[name]))
             if name.startswith("w_"):
                 found |= {"positive": sum(value > 0 for value in values if value is not None)}
-            yield {"response": name, "worlds_of": group} | found | {"paper": _paper(name)}
+            yield {"measure": name, "worlds_of": group} | found | {"paper": _paper(name)}
 
 
 def _paper(name: str) -> str:
-    """What the paper says of a response in the baseline."""
+    """What the paper says of a measure in the baseline."""
     said = PAPER["baseline"]
     texts = {
-        "w_food": "mostly above 4",
-        "w_action": "largely positive or slightly negative",
-        "lifetime": f"{said.mean_lifetime:,.0f}",
-        "food_agent": f"{said.food_per_step:g}",
-        "alive": "{} to {}".format(*said.population or ()),
+        "w_normal_last": "mostly above 4",
+        "w_action_last": "largely positive or slightly negative",
+        "mean_lifetime": f"{said.mean_lifetime:,.0f}",
+        "food_per_step": f"{said.food_per_step:g}",
+        "alive_mean": "{} to {}".format(*said.population or ()),
         "generation": "{} to {}, in ten times the steps".format(*said.generation or ()),
     }
     return texts[name]

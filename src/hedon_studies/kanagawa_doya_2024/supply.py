@@ -4,9 +4,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from hedon.analysis import (
-    RESPONSES,
-    Common,
-    Response,
     ResultTable,
     WorldRecord,
     food_per_agent_step,
@@ -15,6 +12,7 @@ from hedon.analysis import (
 )
 from hedon.config import Config
 from hedon.figure import NamedFigure
+from hedon.measure import MEASURES, Measure
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, sentences, shown_interval, world_rows
 from hedon_studies.kanagawa_doya_2024.fault import FACTORS
 from hedon_studies.kanagawa_doya_2024.figure.supply import Eater, draw_supply
@@ -37,7 +35,7 @@ CONDITIONS = tuple(condition for preset in PRESETS for condition in _conditions(
 
 _NOTE = (
     "grows: food that grows per step; eaten_share: how much of it was eaten; eaten: foods per step lived; both in the "
-    "last tenth of a run; food_agent: mean over the dead of foods / lifetime, the paper's rule, over all of a run. "
+    "last tenth of a run; food_per_step: mean over the dead of foods / lifetime, the paper's rule, over all of a run. "
     "feeds: the number of agents that eat all that grows, at the rate that the paper reports. Its mean counts each of "
     "the dead once; agents that eat more live longer, so that more is eaten per step lived, and those fed are "
     "fewer. Means over worlds, geometric for rates and lifetimes."
@@ -82,8 +80,8 @@ def _eaters(rows: list[dict[str, Any]]) -> list[Eater]:
     eaters = []
     for row in rows:
         preset, rule = row["condition"].split(", ")
-        if row["alive"] and row["eaten"]:
-            eaters.append(Eater(preset, rule, row["alive"], row["eaten"]))
+        if row["alive_mean"] and row["eaten"]:
+            eaters.append(Eater(preset, rule, row["alive_mean"], row["eaten"]))
     return eaters
 
 
@@ -95,25 +93,25 @@ def _supplies(inputs: ItemInputs) -> list[float]:
     return sorted({growth(condition.config(inputs.fidelity)) for condition in CONDITIONS})
 
 
-def _eaten(world: WorldRecord, _common: Common) -> float | None:
+def _eaten(world: WorldRecord) -> float | None:
     return food_per_agent_step(run_tail(world.population), world.food_kinds)
 
 
-def _eaten_share(world: WorldRecord, _common: Common) -> float | None:
+def _eaten_share(world: WorldRecord) -> float | None:
     tail = run_tail(world.population)
     grown = growth(world.config) * int(tail["steps"].sum())
     eaten = sum(int(tail[f"eaten_{kind}"].sum()) for kind in world.food_kinds)
     return eaten / grown if grown else None
 
 
-_KNOWN = {response.name: response for response in RESPONSES}
+_TOLD = "see the note of the table"
 _ASKED = (
-    Response("eaten_share", "share of the food that grows that is eaten, last tenth", _eaten_share),
-    _KNOWN["alive"],
-    Response("eaten", "foods per step lived, last tenth [1/step]", _eaten, ratio=True),
-    _KNOWN["food_agent"],
-    _KNOWN["lifetime"],
-    _KNOWN["energy"],
+    Measure("eaten_share", "share of the food that grows that is eaten, last tenth", _TOLD, _eaten_share),
+    MEASURES["alive_mean"],
+    Measure("eaten", "foods per step lived, last tenth [1/step]", _TOLD, _eaten, ratio=True),
+    MEASURES["food_per_step"],
+    MEASURES["mean_lifetime"],
+    MEASURES["mean_energy"],
 )
 
 

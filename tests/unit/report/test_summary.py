@@ -59,7 +59,7 @@ def test_extinct_worlds_count_but_not_among_the_survivors(tmp_path: Path) -> Non
     assert world["alive"] == 0
     assert summary["mean_lifetime"]["worlds"] == 3
     assert summary["surviving"]["mean_lifetime"]["worlds"] == 2
-    assert summary["surviving"]["alive"]["mean"] > summary["alive"]["mean"]
+    assert summary["surviving"]["alive_mean"]["mean"] > summary["alive_mean"]["mean"]
 
 
 def test_worlds_that_died_out_count_as_empty(tmp_path: Path) -> None:
@@ -70,7 +70,7 @@ def test_worlds_that_died_out_count_as_empty(tmp_path: Path) -> None:
     assert summary["worlds"][1]["alive_mean"] == pytest.approx(ended["agent_steps"].sum() / (0.1 * 40 * 1024))
     assert summary["worlds"][1]["mean_energy"] is None
     alive = [world["alive_mean"] for world in summary["worlds"]]
-    assert summary["alive"]["mean"] == pytest.approx(sum(alive) / 3), "all three, the extinct one too"
+    assert summary["alive_mean"]["mean"] == pytest.approx(sum(alive) / 3), "all three, the extinct one too"
 
 
 def test_a_run_without_rows_has_a_summary(tmp_path: Path) -> None:
@@ -94,7 +94,7 @@ def test_a_damaged_part_is_named_in_the_summary(tmp_path: Path) -> None:
 def test_table_shows_ours_beside_the_papers(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=40, worlds=3, extinct=1))
     text = _print(summarize(run))
-    assert "mean lifetime of the dead [step]" in text
+    assert "lifetime of the dead [step]" in text
     assert "6,310" in text
     assert "1 of 3 worlds died out" in text
     assert "baseline (corrected): 3 worlds" in text
@@ -122,7 +122,7 @@ def test_the_table_has_intervals_from_five_worlds_on(tmp_path: Path) -> None:
     lines = []
     for worlds in (4, 5):
         summary = summarize(open_run(write_run(tmp_path / f"{worlds}", intervals=20, worlds=worlds)))
-        assert (summary["alive"]["low"] is None) == (worlds < 5)
+        assert (summary["alive_mean"]["low"] is None) == (worlds < 5)
         lines += [line for line in _print(summary).splitlines() if "agents alive" in line]
     assert "…" not in lines[0].replace("130 … 150", "")
     assert "…" in lines[1].replace("130 … 150", "")
@@ -159,7 +159,7 @@ def test_a_narrow_terminal_has_every_number_whole(tmp_path: Path) -> None:
     assert max(map(len, text.splitlines())) <= 60
     for world in summary["worlds"]:
         assert all(format_number(world[key]) in text for key in ("steps", "births", "mean_lifetime", "food_per_step"))
-    alive = summary["alive"]
+    alive = summary["alive_mean"]
     assert f"{format_number(alive['low'])} … {format_number(alive['high'])}" in text
 
 

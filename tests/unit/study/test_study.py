@@ -8,11 +8,12 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
-from hedon.analysis.response import RESPONSES, common_to, figures
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import diff, digest, load_config
 from hedon.figure.named import NamedFigure
+from hedon.measure import MEASURES
+from hedon.measure.response import RESPONSES, at_common_age, common_age, values
 from hedon.record.reader import open_run
 from hedon.report.table import cells
 from hedon.study.item import Item, ItemInputs
@@ -94,17 +95,17 @@ def test_an_effect_of_growth_is_found(worlds: list[WorldRecord]) -> None:
     living = worlds[::2]
     doubled = [dataclasses.replace(w, population=w.population.with_columns(pl.col("agent_steps") * 2)) for w in living]
     tables, _ = made(fault.FAULTS, {label: doubled if cell[0] else living for label, cell in fault.CELLS.items()})
-    rows = tables["fault_effects"].rows.filter(pl.col("response") == "alive")
-    alive = np.mean([figures(world, common_to(living), RESPONSES)["alive"] or 0.0 for world in living])
+    rows = tables["fault_effects"].rows.filter(pl.col("measure") == "alive_mean")
+    alive = np.mean([MEASURES["alive_mean"].value(world) or 0.0 for world in living])
     assert rows["effect"][0] == "growth"
     assert rows["estimate"][0] == pytest.approx(alive)
     assert rows["estimate"][1:].to_numpy() == pytest.approx(0.0, abs=1e-9)
     # A rate per step lived is halved: a ratio.
-    food = tables["fault_effects"].rows.filter(pl.col("response") == "food_step")
+    food = tables["fault_effects"].rows.filter(pl.col("measure") == "food_per_agent_step")
     assert (food["scale"][0], food["estimate"][0]) == ("ratio", pytest.approx(0.5))
     cells = tables["fault_cells"].rows
     assert cells["condition"].to_list() == list(fault.CELLS)
-    assert cells.filter(pl.col("condition") == "growth")["alive"][0] == pytest.approx(2 * alive)
+    assert cells.filter(pl.col("condition") == "growth")["alive_mean"][0] == pytest.approx(2 * alive)
 
 
 def test_missing_cells_are_named(worlds: list[WorldRecord]) -> None:
@@ -112,27 +113,26 @@ def test_missing_cells_are_named(worlds: list[WorldRecord]) -> None:
     assert set(tables["fault_effects"].rows["effect"]) == {"growth"}
     note = tables["fault_effects"].note
     assert "left out: noise, critic, solver," in note
-    assert "estimated from some cells only: growth (of all responses)" in note
+    assert "estimated from some cells only: growth (of all measures)" in note
 
 
 def test_an_extinct_world_counts_as_empty(worlds: list[WorldRecord]) -> None:
-    common = common_to(worlds)
-    assert common.end == 60 * 1024
-    found = figures(worlds[1], common, RESPONSES)
-    assert (found["alive"], found["extinct"], found["energy"]) == (0.0, 1.0, None)
-    assert found["lifetime"] is not None
-    assert found["w_food"] is not None
-    alone = figures(worlds[1], common_to(worlds[1:2]), RESPONSES)["alive"]
+    assert worlds[1].end_step == 60 * 1024
+    found = values(worlds[1], at_common_age(RESPONSES, common_age(worlds)))
+    assert (found["alive_mean"], found["extinct"], found["mean_energy"]) == (0.0, 1.0, None)
+    assert found["mean_lifetime"] is not None
+    assert found["restricted_lifetime"] is not None
+    assert found["w_normal_last"] is not None
+    alone = MEASURES["alive_mean"].value(worlds[1].until(worlds[1].last_step))
     assert alone is not None  # the end of its own records: somebody lived in the last tenth
     assert 0 < alone < 50
 
 
 def test_lifetimes_are_averaged_up_to_an_age_that_all_long_lives_share(worlds: list[WorldRecord]) -> None:
-    common = common_to(worlds)
-    living = common_to(worlds[::2])
-    assert common.until == living.until  # the extinct world's short lives are known in full
-    assert 6000 < common.until <= 60 * 1024
-    assert common_to([]).until == 0.0
+    common = common_age(worlds)
+    assert common == common_age(worlds[::2])  # the extinct world's short lives are known in full
+    assert 6000 < common <= 60 * 1024
+    assert common_age([]) == 0.0
 
 
 def test_the_rule_of_decline() -> None:
@@ -160,7 +160,7 @@ def test_survivors_are_told_from_all(worlds: list[WorldRecord]) -> None:
     assert fates["extinct or heading for it"] == 1
     headers, _ = cells(tables["released_fate"])
     assert "95 % interval" not in headers, "a share of three worlds has none"
-    rows = tables["released_survivors"].rows.filter(pl.col("response") == "alive")
+    rows = tables["released_survivors"].rows.filter(pl.col("measure") == "alive_mean")
     assert rows["worlds"].to_list() == [3, 2, 2]
     assert rows["mean"][0] == pytest.approx(rows["mean"][1] * 2 / 3)
     assert rows["low"].null_count() == 3, "so few worlds show no interval"
@@ -207,21 +207,21 @@ def test_entropy_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
         for w in reversed(living)
     ]
     tables, _ = made(entropy.ENTROPY, {entropy.WITH: living, entropy.WITHOUT: halved})
-    rows = {row["response"]: row for row in tables["entropy"].rows.iter_rows(named=True)}
-    food = rows["food_step"]
+    rows = {row["measure"]: row for row in tables["entropy"].rows.iter_rows(named=True)}
+    food = rows["food_per_agent_step"]
     assert (food["change"], food["change_low"], food["change_high"]) == pytest.approx((0.5, 0.5, 0.5))
     assert (food["seeds"], food["low"], food["scale"]) == (2, None, "ratio")
-    assert rows["w_food"]["change"] == 0.0
+    assert rows["w_normal_last"]["change"] == 0.0
 
 
 def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
     doubled = [dataclasses.replace(w, population=w.population.with_columns(pl.col("agent_steps") * 2)) for w in worlds]
     tables, drawn = made(acting.ACTING, {acting.FULL: worlds, acting.HALF: doubled})
     assert [figure.name for figure in drawn] == ["acting_courses"]
-    rows = {row["response"]: row for row in tables["acting"].rows.iter_rows(named=True)}
-    assert rows["food_step"]["change"] == pytest.approx(0.5)
-    assert rows["lifetime"]["change"] == pytest.approx(1.0)
-    assert rows["lifetime"]["low"] is None, "three seeds have no interval"
+    rows = {row["measure"]: row for row in tables["acting"].rows.iter_rows(named=True)}
+    assert rows["food_per_agent_step"]["change"] == pytest.approx(0.5)
+    assert rows["mean_lifetime"]["change"] == pytest.approx(1.0)
+    assert rows["mean_lifetime"]["low"] is None, "three seeds have no interval"
     precisions = [
         condition.config("as_printed").species["agent"].learning.acting_weights for condition in acting.CONDITIONS
     ]

@@ -46,7 +46,7 @@ def test_what_is_eaten_is_counted_in_the_last_tenth(worlds: list[WorldRecord]) -
         assert row["eaten_share"] == pytest.approx(eaten / (0.2 * 4 * 1024))
         assert row["eaten"] == pytest.approx(eaten / int(tail["agent_steps"].sum()))
         # The point of a world lies on the line of what it eats: so many agents, so much each.
-        assert row["eaten"] * row["alive"] == pytest.approx(0.2 * row["eaten_share"])
+        assert row["eaten"] * row["alive_mean"] == pytest.approx(0.2 * row["eaten_share"])
     [condition] = tables["supply"].rows.rows(named=True)
     assert (condition["condition"], condition["worlds"], condition["grows"]) == ("small, corrected", 2, 0.2)
     assert condition["eaten_share"] == pytest.approx(rows["eaten_share"].to_numpy().mean())
@@ -70,7 +70,7 @@ def test_the_figure_has_a_panel_per_condition_with_its_worlds_its_supplies_and_t
     assert [axes.get_title("left") for axes in named.figure.axes] == list(counts)
     for axes, (condition, count) in zip(named.figure.axes, counts.items(), strict=True):
         points = [np.asarray(line.get_xydata())[0] for line in axes.lines if line.get_marker() == "o"]
-        mine = by_world.filter(pl.col("condition").str.starts_with(condition)).select("alive", "eaten").rows()
+        mine = by_world.filter(pl.col("condition").str.starts_with(condition)).select("alive_mean", "eaten").rows()
         assert len(points) == count
         assert np.allclose(points, mine) if mine else not points
         lines = [np.asarray(line.get_xydata()) for line in axes.lines if line.get_linestyle() == "-"]

@@ -41,6 +41,8 @@ class WorldRecord:
         population: its rows of the table `population`, by step.
         last_step: up to which the records reach [step].
         first_step: at which they begin: 0, or where the run branched off another [step].
+        planned_step: to which the worlds of its run were to go, or have gone so far [step].
+        hunts: whether any species of its world eats agents.
         extinct_step: at which nobody was left [step]; None while somebody lives.
         apart_step: at which the first of the world's other species was gone [step]; None while all of them live.
         prey: the species that it eats, its own among them if it does.
@@ -62,6 +64,13 @@ class WorldRecord:
     prey: tuple[str, ...] = ()
     species: str = ONLY
     first_step: int = 0
+    planned_step: int = 0
+    hunts: bool = False
+
+    @property
+    def end_step(self) -> int:
+        """Up to which step numbers of the world are told [step]: once it has died out, the rest counts as empty."""
+        return max(self.planned_step, self.last_step)
 
     @property
     def born(self) -> pl.DataFrame:
@@ -101,8 +110,9 @@ class WorldRecord:
         Args:
             step: the end [step]; at the end of an interval, or the last one is lost.
         """
+        planned = min(self.planned_step, step)
         if step >= self.last_step:
-            return self
+            return self if planned == self.planned_step else replace(self, planned_step=planned)
         died_later = pl.col("death_step").is_null() | (pl.col("death_step") > step)
         known = {"world", "seed", "agent_id", "parent_id", "generation", "birth_step", "birth_energy"}
         later = [name for name in self.agents.columns if name not in known | set(self.weight_names)]
@@ -114,6 +124,7 @@ class WorldRecord:
             last_step=step,
             extinct_step=_by(step, self.extinct_step),
             apart_step=_by(step, self.apart_step),
+            planned_step=planned,
         )
 
 
@@ -226,10 +237,11 @@ def _apart(world: WorldRecord, every: Sequence[WorldRecord]) -> int | None:
 def _records(
     run: Run, condition: str, config: Config, species: str, agents: pl.DataFrame, population: pl.DataFrame, kind: Kind
 ) -> list[WorldRecord]:
-    worlds = []
+    worlds, planned = [], _planned_step(run, population)
     for index, seed in enumerate(run.manifest.seeds):
-        mine = agents.filter(pl.col("world") == index).sort("agent_id")
-        rows = population.filter(pl.col("world") == index)
+        # In one piece: sums must not depend on the parts in which rows were written.
+        mine = agents.filter(pl.col("world") == index).sort("agent_id").rechunk()
+        rows = population.filter(pl.col("world") == index).rechunk()
         ends = [rows["step"].max(), mine["birth_step"].max(), mine["death_step"].max()]
         last = max((int(end) for end in ends if isinstance(end, int)), default=0)
         worlds.append(
@@ -248,9 +260,19 @@ def _records(
                 prey=kind.prey,
                 species=species,
                 first_step=run.manifest.parent.step if run.manifest.parent else 0,
+                planned_step=planned,
+                hunts=bool(run.columns.prey),
             )
         )
     return worlds
+
+
+def _planned_step(run: Run, population: pl.DataFrame) -> int:
+    """Up to which step all worlds of a run were to go, or have gone so far; at least 1 [step]."""
+    manifest = run.manifest
+    longest = max(manifest.steps_done, default=0)
+    recorded = int(population["step"].to_numpy().max(initial=0))
+    return max(manifest.steps_asked if manifest.status == "finished" else max(longest, recorded), 1)
 
 
 def gone_step(run: Run, index: int, agents: pl.DataFrame, population: pl.DataFrame) -> int | None:

@@ -8,20 +8,11 @@ from rich.console import Group
 from rich.text import Text
 
 from hedon.cli.display.table import PrintedTable
+from hedon.measure.catalogue import MEASURES
 from hedon.report.table import NOTHING, format_number
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.text import count
 
-_QUANTITIES = {  # key of the summary: name
-    "mean_lifetime": "mean lifetime of the dead [step]",
-    "food_per_step": "food per step, mean over agents [1/step]",
-    "food_per_agent_step": "food per step lived [1/step]",
-    "alive": "agents alive",
-    "prey_per_step": "agents eaten per step, mean over agents [1/step]",
-    "prey_per_agent_step": "agents eaten per step lived [1/step]",
-    "mean_energy": "mean energy",
-    "generation": "mean generation",
-}
 _WORLD_COLUMNS = {  # key of a world: header
     "seed": "seed",
     "steps": "steps",
@@ -106,7 +97,7 @@ def _over_worlds(summary: Mapping[str, Any], part: _Part) -> list[PrintedTable |
     headers = ["mean over worlds", "value", "95 % interval"]
     headers += [f"{name} ({source['steps'] / 1e6:g}e6 steps)" for name, source in sources.items()]
     rows = []
-    for key, label in _QUANTITIES.items():
+    for key, label in ((each.name, each.title) for each in MEASURES.values() if each.averaged):
         if key in part.means and (not part.species or part.means[key]["mean"] is not None):
             reported = [_reported(source.get(key)) for source in sources.values()]
             rows.append([label, *_interval(part.means[key]), *reported])

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
-from hedon.analysis import Response
 from hedon.figure import BLUE, INK, MUTED, PALE, VERMILION, new_figure, say_empty, styled
+from hedon.measure import Measure
 
 _COLUMNS = 3
 _WIDTH = 9.0
@@ -20,29 +20,29 @@ _REACH = 2.0  # widths of the estimates' own range beyond which intervals are cu
 _WIDE = 4.0  # an axis of ratios is logarithmic where the largest value is this many times the least, or more
 
 
-def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], responses: Sequence[Response]) -> Figure:
-    """A panel per response, a line per cell: a point per world, a bar for their mean.
+def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], measures: Sequence[Measure]) -> Figure:
+    """A panel per measure, a line per cell: a point per world, a bar for their mean.
 
-    Means of responses that are compared as ratios are geometric. Hollow points are worlds that died out.
+    Means of measures that are compared as ratios are geometric. Hollow points are worlds that died out.
 
     Args:
-        worlds: one row per world: condition, seed, died_out and a column per response.
+        worlds: one row per world: condition, seed, died_out and a column per measure.
         conditions: in the order of the lines.
-        responses: that are drawn.
+        measures: that are drawn.
     """
     with styled():
-        figure, panels = _panels(responses, conditions)
-        for axes, response in zip(panels, responses, strict=True):
+        figure, panels = _panels(measures, conditions)
+        for axes, measure in zip(panels, measures, strict=True):
             for line, condition in enumerate(conditions):
-                rows = worlds.filter((pl.col("condition") == condition) & pl.col(response.name).is_not_null()).sort(
+                rows = worlds.filter((pl.col("condition") == condition) & pl.col(measure.name).is_not_null()).sort(
                     "seed"
                 )
                 if rows.height:
-                    _draw_cell(axes, line, rows, response)
-            known = worlds[response.name].drop_nulls().to_numpy().astype(np.float64)
+                    _draw_cell(axes, line, rows, measure)
+            known = worlds[measure.name].drop_nulls().to_numpy().astype(np.float64)
             if not len(known):
                 say_empty(axes, "no world has a value")
-            elif response.ratio:
+            elif measure.ratio:
                 _scale(axes, known.min(), known.max())
             elif known.min() <= 0 <= known.max():
                 axes.axvline(0, color=PALE, linewidth=1.0, zorder=0.5)
@@ -57,32 +57,32 @@ def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], responses: Seque
     return figure
 
 
-def draw_effects(effects: pl.DataFrame, names: Sequence[str], responses: Sequence[Response]) -> Figure:
-    """A panel per response, a line per effect: the estimate, its 95 % interval, and the same in single seeds.
+def draw_effects(effects: pl.DataFrame, names: Sequence[str], measures: Sequence[Measure]) -> Figure:
+    """A panel per measure, a line per effect: the estimate, its 95 % interval, and the same in single seeds.
 
     The vertical line is where nothing is changed: 0, or a ratio of 1. Filled points are effects whose corrected
     p is at most 0.05. An interval that reaches far beyond the estimates is cut off at an arrow.
 
     Args:
-        effects: one row per response and effect: response, effect, estimate, low, high, p_holm, seed_low, seed_high.
+        effects: one row per measure and effect: measure, effect, estimate, low, high, p_holm, seed_low, seed_high.
         names: of the effects, in the order of the lines.
-        responses: that are drawn.
+        measures: that are drawn.
     """
     with styled():
-        figure, panels = _panels(responses, names)
-        for axes, response in zip(panels, responses, strict=True):
-            rows = effects.filter(pl.col("response") == response.name)
+        figure, panels = _panels(measures, names)
+        for axes, measure in zip(panels, measures, strict=True):
+            rows = effects.filter(pl.col("measure") == measure.name)
             if rows.is_empty():
                 say_empty(axes, "no effect can be estimated")
                 continue
-            axes.axvline(1.0 if response.ratio else 0.0, color=PALE, linewidth=1.4, zorder=0.5)
-            low, high = _reach(rows, response)
-            if response.ratio:
+            axes.axvline(1.0 if measure.ratio else 0.0, color=PALE, linewidth=1.4, zorder=0.5)
+            low, high = _reach(rows, measure)
+            if measure.ratio:
                 _scale(axes, low, high)
             for row in rows.iter_rows(named=True):
                 _draw_effect(axes, names.index(row["effect"]), row, low, high)
             axes.set_xlim(low, high)
-            axes.set_xlabel("ratio" if response.ratio else "difference")
+            axes.set_xlabel("ratio" if measure.ratio else "difference")
         sure = {"color": BLUE, "marker": "o", "markersize": 4.5}
         handles = [
             Line2D([], [], **sure, linewidth=1.4, label="effect and 95 % interval, p (Holm) ≤ 0.05"),
@@ -93,28 +93,28 @@ def draw_effects(effects: pl.DataFrame, names: Sequence[str], responses: Sequenc
     return figure
 
 
-def _panels(responses: Sequence[Response], lines: Sequence[str]) -> tuple[Figure, list[Axes]]:
+def _panels(measures: Sequence[Measure], lines: Sequence[str]) -> tuple[Figure, list[Axes]]:
     """A grid of panels that share the names of their lines, which stand at the left; and only as many as needed."""
-    rows = -(-len(responses) // _COLUMNS)
+    rows = -(-len(measures) // _COLUMNS)
     figure = new_figure(_WIDTH, rows * (0.95 + _ROW * max(len(lines), 2)) + 0.3)
     panels = figure.subplots(rows, _COLUMNS, sharey=True, squeeze=False).ravel().tolist()
-    for axes in panels[len(responses) :]:
+    for axes in panels[len(measures) :]:
         axes.remove()
-    for axes, response in zip(panels, responses, strict=False):
-        axes.set_title(response.title, fontsize=9)
+    for axes, measure in zip(panels, measures, strict=False):
+        axes.set_title(measure.title, fontsize=9)
         axes.set_ylim(len(lines) - 0.4, -0.6)
         axes.set_yticks(range(len(lines)), lines)
         axes.grid(visible=False, axis="y")
-    return figure, panels[: len(responses)]
+    return figure, panels[: len(measures)]
 
 
-def _draw_cell(axes: Axes, line: int, rows: pl.DataFrame, response: Response) -> None:
-    values = rows[response.name].to_numpy().astype(np.float64)
+def _draw_cell(axes: Axes, line: int, rows: pl.DataFrame, measure: Measure) -> None:
+    values = rows[measure.name].to_numpy().astype(np.float64)
     offset = np.linspace(-_SPREAD, _SPREAD, len(values)) if len(values) > 1 else np.zeros(1)
     gone = rows["died_out"].to_numpy()
     axes.scatter(values[~gone], line + offset[~gone], s=17, color=BLUE, linewidths=0, alpha=0.8, zorder=3)
     axes.scatter(values[gone], line + offset[gone], s=17, facecolors="white", edgecolors=VERMILION, zorder=3)
-    mean = np.exp(np.log(values).mean()) if response.ratio else values.mean()
+    mean = np.exp(np.log(values).mean()) if measure.ratio else values.mean()
     axes.plot([mean, mean], [line - 0.38, line + 0.38], color=INK, linewidth=2.0, zorder=2)
 
 
@@ -131,12 +131,12 @@ def _draw_effect(axes: Axes, line: int, row: dict, low: float, high: float) -> N
     axes.scatter(row["estimate"], line, s=24, c=[fill], edgecolors=BLUE, linewidths=1.2, zorder=4)
 
 
-def _reach(rows: pl.DataFrame, response: Response) -> tuple[float, float]:
+def _reach(rows: pl.DataFrame, measure: Measure) -> tuple[float, float]:
     """The limits of the axis: all estimates and seeds, and of the intervals what is not much wider."""
-    neutral = 1.0 if response.ratio else 0.0
+    neutral = 1.0 if measure.ratio else 0.0
     inner = _known(rows, ("estimate", "seed_low", "seed_high"), neutral)
     outer = _known(rows, ("low", "high"), neutral)
-    if response.ratio:
+    if measure.ratio:
         inner, outer = np.log(inner), np.log(np.maximum(outer, 1e-300))
     width = max(float(np.ptp(inner)), 1e-3)
     low = max(outer.min(), inner.min() - _REACH * width)
@@ -144,7 +144,7 @@ def _reach(rows: pl.DataFrame, response: Response) -> tuple[float, float]:
     low, high = min(low, inner.min()), max(high, inner.max())
     margin = 0.06 * (high - low)
     bounds = np.array([low - margin, high + margin])
-    low, high = (np.exp(bounds) if response.ratio else bounds).tolist()
+    low, high = (np.exp(bounds) if measure.ratio else bounds).tolist()
     return low, high
 
 

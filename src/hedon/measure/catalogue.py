@@ -1,0 +1,225 @@
+"""The catalogue of measures: summaries, tables, comparisons, claims and plots take their numbers from here.
+
+A number that is listed here appears in all of them. Measures of genes are made for each gene that worlds have.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import polars as pl
+
+from hedon.analysis.agent.food import food_per_agent_step, food_per_step
+from hedon.analysis.agent.lifetime import mean_lifetime
+from hedon.analysis.gene.weight import LAST_AGENTS, end_mean, last_mean
+from hedon.analysis.world.population import alive_after_extinction, last_generation, mean_alive, mean_energy, run_tail
+from hedon.analysis.world.record import WorldRecord
+from hedon.measure.measure import Measure
+from hedon.statistic.interval import AMOUNT, SHARE
+
+
+def _has(column: str) -> Callable[[WorldRecord], bool]:
+    return lambda world: column in world.population.columns
+
+
+def _sum_of(column: str) -> Callable[[WorldRecord], int]:
+    return lambda world: int(world.population[column].sum())
+
+
+def _alive(world: WorldRecord) -> int:
+    rows = world.population["alive"]
+    return int(rows[-1]) if len(rows) else world.agents["death_step"].null_count()
+
+
+def _alive_mean(world: WorldRecord) -> float | None:
+    if world.extinct_step is None:
+        return mean_alive(run_tail(world.population))
+    return alive_after_extinction(world.population, world.end_step)
+
+
+def _energy(world: WorldRecord) -> float | None:
+    return mean_energy(run_tail(world.population)) if world.extinct_step is None else None
+
+
+def _refused(world: WorldRecord) -> float | None:
+    sums = world.population.select(pl.col("births", "births_failed_full", "births_failed_space").sum()).row(0)
+    return (sums[1] + sums[2]) / sum(sums) if sum(sums) else None
+
+
+MEASURES: Mapping[str, Measure] = {
+    measure.name: measure
+    for measure in (
+        Measure("alive", "agents alive at the end", "agents alive at the end", _alive, AMOUNT),
+        Measure(
+            "alive_mean",
+            "agents alive, last tenth",
+            "agents alive, mean over the last tenth of the steps; after its last agent, a world counts as empty",
+            _alive_mean,
+            AMOUNT,
+            usual=True,
+            averaged=True,
+        ),
+        Measure(
+            "extinct",
+            "share of worlds extinct",
+            "true if nobody is left",
+            lambda world: world.extinct_step is not None,
+            SHARE,
+            binary=True,
+            usual=True,
+        ),
+        Measure(
+            "extinct_step", "step of extinction", "step at which nobody was left, or null", lambda w: w.extinct_step
+        ),
+        Measure("births", "children born", "children born", _sum_of("births"), AMOUNT),
+        Measure("deaths", "agents that died", "agents that died", _sum_of("deaths"), AMOUNT),
+        Measure(
+            "births_failed_full",
+            "births that failed at capacity",
+            "births that failed at capacity",
+            _sum_of("births_failed_full"),
+            AMOUNT,
+        ),
+        Measure(
+            "births_failed_space",
+            "births that failed for want of space",
+            "births that failed for want of a free place",
+            _sum_of("births_failed_space"),
+            AMOUNT,
+        ),
+        Measure("refused", "share of births without a place", "share of births that failed", _refused, SHARE),
+        Measure(
+            "deaths_starved",
+            "agents that starved",
+            "agents that starved",
+            _sum_of("deaths_starved"),
+            AMOUNT,
+            applies=_has("deaths_starved"),
+        ),
+        Measure(
+            "deaths_eaten",
+            "agents that were eaten",
+            "agents that were eaten; where agents eat agents",
+            _sum_of("deaths_eaten"),
+            AMOUNT,
+            applies=_has("deaths_eaten"),
+        ),
+        Measure(
+            "mean_lifetime",
+            "lifetime of the dead [step]",
+            "mean lifetime of the dead [step]; too small where many still live, see `alive`",
+            lambda world: mean_lifetime(world.born),
+            AMOUNT,
+            ratio=True,
+            usual=True,
+            averaged=True,
+        ),
+        Measure(
+            "mean_lifetime_born",
+            "lifetime of the dead without founders [step]",
+            "the same without the founders [step]",
+            lambda world: mean_lifetime(world.born, born_in_run=True),
+            AMOUNT,
+            ratio=True,
+        ),
+        Measure(
+            "mean_lifetime_last",
+            "lifetime of those who died last [step]",
+            "the same over the 5000 that died last [step]",
+            lambda world: mean_lifetime(world.born, last=LAST_AGENTS),
+            AMOUNT,
+            ratio=True,
+        ),
+        Measure(
+            "food_per_step",
+            "food per step, mean over agents [1/step]",
+            "mean over the dead of foods eaten / lifetime [1/step]; null for who eats no food",
+            lambda world: food_per_step(world.agents, world.food_kinds),
+            AMOUNT,
+            ratio=True,
+            averaged=True,
+        ),
+        Measure(
+            "food_per_agent_step",
+            "food per agent and step",
+            "foods eaten by all / steps lived by all [1/step]; null for who eats no food",
+            lambda world: food_per_agent_step(world.population, world.food_kinds),
+            AMOUNT,
+            ratio=True,
+            usual=True,
+            averaged=True,
+        ),
+        Measure(
+            "prey_per_step",
+            "agents eaten per step, mean over agents [1/step]",
+            "mean over the dead of agents eaten / lifetime [1/step]; null for a species that eats no agents",
+            lambda world: food_per_step(world.agents, world.prey),
+            AMOUNT,
+            ratio=True,
+            averaged=True,
+            applies=lambda world: world.hunts,
+        ),
+        Measure(
+            "prey_per_agent_step",
+            "agents eaten per agent and step",
+            "agents eaten by all / steps lived by all [1/step]; likewise",
+            lambda world: food_per_agent_step(world.population, world.prey),
+            AMOUNT,
+            ratio=True,
+            usual=True,
+            averaged=True,
+            applies=lambda world: world.hunts,
+        ),
+        Measure(
+            "mean_energy",
+            "mean energy, last tenth",
+            "energy of the living, mean over the last tenth of the steps; none in a world that died out",
+            _energy,
+            AMOUNT,
+            usual=True,
+            averaged=True,
+        ),
+        Measure(
+            "generation",
+            "mean generation at the end",
+            "mean generation of the living at the end, or when somebody lived last",
+            lambda world: last_generation(world.population),
+            AMOUNT,
+            averaged=True,
+        ),
+    )
+}
+"""Every measure but those of genes, by name."""
+
+
+def gene_mean(gene: str) -> Measure:
+    """The mean of a gene among the living at the end, or when somebody lived last."""
+    title, usual = f"mean of {gene}", gene.startswith("w_")
+
+    def of(world: WorldRecord) -> float | None:
+        return end_mean(gene, world) if gene in world.weight_names else None
+
+    return Measure(f"{gene}_mean", title, title, of, usual=usual)
+
+
+def last_born_mean(gene: str) -> Measure:
+    """The mean of a gene over the 5000 agents born last, as the paper shows it."""
+    title = f"{gene}, agents born last"
+
+    def of(world: WorldRecord) -> float | None:
+        return last_mean(gene, world) if gene in world.weight_names else None
+
+    return Measure(f"{gene}_last", title, title, of)
+
+
+def column_measure(column: str) -> Measure | None:
+    """The measure of a table's column; None for one of another kind.
+
+    Where worlds have several species, "prey.alive_mean" is a measure of the species prey, and its title says so.
+    """
+    species, _, name = column.rpartition(".")
+    found = MEASURES.get(name)
+    if found is None and name.endswith("_mean"):
+        found = gene_mean(name.removesuffix("_mean"))
+    if found is None or not species:
+        return found
+    return replace(found, name=column, title=f"{found.title}: {species}")

@@ -1,0 +1,105 @@
+"""What studies measure of each world, and the age up to which lifetimes of several worlds can be compared."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hedon.analysis.agent.lifetime import durations
+from hedon.analysis.world.record import WorldRecord
+from hedon.measure.catalogue import MEASURES, last_born_mean
+from hedon.measure.measure import Measure
+from hedon.statistic.interval import AMOUNT
+from hedon.statistic.survival import SurvivalCurve, restricted_mean, survival_curve
+
+_NEGLIGIBLE = 0.01
+"""Share of a mean lifetime that may lie beyond the age up to which a curve is trusted."""
+RESTRICTED = "restricted_lifetime"
+"""The measure that depends on the worlds that it is compared with: see `common_age`."""
+
+
+def restricted_lifetime(until: float) -> Measure:
+    """Mean of min(lifetime, an age), the living counted as censored.
+
+    Args:
+        until: The age [step]; no world has the number at 0.
+    """
+
+    def of(world: WorldRecord) -> float | None:
+        curve = survival_curve(*durations(world.born, world.last_step))
+        return restricted_mean(curve, until).mean if until and len(curve.age) else None
+
+    title = "lifetime, the living counted [step]"
+    return Measure(RESTRICTED, title, "mean of min(lifetime, an age that all worlds share)", of, AMOUNT, ratio=True)
+
+
+def _size_of(measure: Measure) -> Measure:
+    def of(world: WorldRecord) -> float | None:
+        value = measure.of(world)
+        return None if value is None else abs(value)
+
+    title = f"|{measure.title}|"
+    return replace(measure, name=f"{measure.name}_size", title=title, meaning=f"size of {title}", of=of, within=AMOUNT)
+
+
+_NEUTRAL = last_born_mean("neutral_1")
+RESPONSES: tuple[Measure, ...] = (
+    MEASURES["alive_mean"],
+    MEASURES["mean_lifetime"],
+    restricted_lifetime(0.0),
+    MEASURES["food_per_step"],
+    MEASURES["food_per_agent_step"],
+    last_born_mean("w_normal"),
+    last_born_mean("w_action"),
+    _NEUTRAL,
+    _size_of(_NEUTRAL),
+    MEASURES["refused"],
+    MEASURES["generation"],
+    MEASURES["mean_energy"],
+    MEASURES["extinct"],
+)
+"""What studies measure of a baseline world; lifetimes with the living get their age from `at_common_age`."""
+
+
+def at_common_age(measures: Iterable[Measure], until: float) -> list[Measure]:
+    """The same measures, where lifetimes with the living are averaged up to an age.
+
+    Args:
+        measures: Any measures.
+        until: The age [step].
+    """
+    return [restricted_lifetime(until) if each.name == RESTRICTED else each for each in measures]
+
+
+def common_age(worlds: Iterable[WorldRecord]) -> float:
+    """The age up to which the lifetimes of all of some worlds can be averaged [step]; 0 where there is none.
+
+    A curve is trusted up to the age that 20 agents reached. The common age is the largest of these at which no curve
+    would have to be read further than it is trusted, but for survivors too few to move its mean by a
+    hundredth. In an extinct world no life is censored, so its curve can be read at any age.
+    """
+    worlds = list(worlds)
+    curves = [survival_curve(*durations(w.born, w.last_step)) for w in worlds if w.extinct_step is None]
+    trusted = {curve.trusted_age(): curve for curve in curves if curve.trusted_age() > 0}
+    if not trusted:  # every world died out, or nobody did
+        gone = [survival_curve(*durations(w.born, w.last_step)).trusted_age() for w in worlds]
+        return max(gone, default=0.0)
+    return max((age for age in trusted if all(_readable(c, a, age) for a, c in trusted.items())), default=0.0)
+
+
+def _readable(curve: SurvivalCurve, trusted: float, until: float) -> bool:
+    """Whether a curve's mean up to an age needs nothing beyond the age up to which it is trusted."""
+    if until <= trusted:
+        return True
+    left = float(curve.share[np.searchsorted(curve.age, trusted)])
+    return left * (until - trusted) <= _NEGLIGIBLE * restricted_mean(curve, trusted).mean
+
+
+def values(world: WorldRecord, measures: Sequence[Measure]) -> dict[str, float | None]:
+    """All numbers of one world, by name.
+
+    Args:
+        world: A world with its agents.
+        measures: What is asked of it.
+    """
+    return {measure.name: measure.value(world) for measure in measures}
