@@ -1,12 +1,11 @@
 """Part B: which weights of sight and food evolve under a slow and a fast learner, from the same founders.
 
 `python -m hedon_studies.same_genes_another_learner.evolution worlds RUN… --out FOLDER` reduces runs to two tables:
-`worlds.csv`, a row per world, and `living.parquet`, the genes of all who are alive at the end.
+`worlds.csv`, a row per world, and `living.parquet`, the genes of the agents alive at the end.
 `python -m hedon_studies.same_genes_another_learner.evolution tests FOLDER` prints the tests that expected.md names.
 """
 
 import argparse
-import json
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -15,20 +14,19 @@ from typing import Any
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.analysis import (
     WorldRecord,
-    food_per_step,
     last_living,
     mean_alive,
-    mean_lifetime,
     read_worlds,
     standard_drift,
 )
+from hedon.measure import MEASURES
 from hedon.record import Run, open_run
-from hedon.statistic import LEVEL, holm, paired_contrast
+from hedon.statistic import holm
 from hedon_studies.same_genes_another_learner.landscape import ACTION, FOOD, SIGHT
+from hedon_studies.same_genes_another_learner.named_test import named_test
 
 ARMS = {"slow": 0.0003, "fast": 0.003}
 """The learning rate of each arm."""
@@ -37,16 +35,16 @@ WORLDS, LIVING = "worlds.csv", "living.parquet"
 Floats = NDArray[np.float64]
 
 
-def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
-    """What one world says about where its weights settled.
+def worldnamed_test(world: WorldRecord, run: Run) -> dict[str, Any]:
+    """The row of `worlds.csv` that describes one world.
 
     Args:
         world: A world of `run`.
         run: Its run, for the provenance.
 
     Returns:
-        The arm and the seed; demography; per weight the mean of the living at the end and its score against neutral
-        walks down the same pedigree; revision, start and digests.
+        Arm and seed; demography, with the number alive averaged over all steps; for each weight the mean among the
+        living at the end and its score against neutral walks down the same pedigree; revision, start and digests.
     """
     rate = world.own.learning.learning_rate
     arm = next((name for name, value in ARMS.items() if math.isclose(value, rate, rel_tol=1e-6)), str(rate))
@@ -57,9 +55,8 @@ def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
         "seed": world.seed,
         "steps": world.last_step,
         "extinct_step": world.extinct_step,
-        "alive_mean": mean_alive(world.population),
-        "mean_lifetime": mean_lifetime(world.agents),
-        "food_per_step": food_per_step(world.agents, world.food_kinds),
+        "alive_all_steps": mean_alive(world.population),
+        **{name: MEASURES[name].of(world) for name in ("mean_lifetime", "food_per_step")},
         "generation": drift[0].generation if drift else None,
         **{key: value for one in drift for key, value in ((one.weight, one.mean), (f"{one.weight}_score", one.score))},
         "backend": manifest.sessions[-1].backend,
@@ -72,7 +69,7 @@ def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
 
 
 def living(world: WorldRecord) -> pl.DataFrame:
-    """The genes of all who are alive at the end: the rows of `living.parquet` of one world."""
+    """The rows of `living.parquet` from one world: the genes of the agents alive at the end."""
     genes = last_living(world.agents, world.population).select(pl.col(world.weight_names).cast(pl.Float32))
     rate = pl.lit(world.own.learning.learning_rate).alias("learning_rate")
     return genes.select(rate, pl.lit(world.seed, pl.Int32).alias("seed"), pl.all())
@@ -82,15 +79,15 @@ def reduce_runs(folders: Iterable[Path], out: Path) -> None:
     """Writes the two tables of some runs.
 
     Args:
-        folders: Of runs.
-        out: A folder, made if it is not there.
+        folders: The runs.
+        out: A folder, created if it does not exist.
     """
     rows: list[dict[str, Any]] = []
     genes: list[pl.DataFrame] = []
     for folder in folders:
         run = open_run(folder)
         for world in read_worlds([run]):
-            rows.append(world_row(world, run))
+            rows.append(worldnamed_test(world, run))
             genes.append(living(world))
     out.mkdir(parents=True, exist_ok=True)
     pl.DataFrame(rows, infer_schema_length=None).sort("arm", "seed").write_csv(out / WORLDS)
@@ -98,7 +95,7 @@ def reduce_runs(folders: Iterable[Path], out: Path) -> None:
 
 
 def pairs(worlds: pl.DataFrame) -> pl.DataFrame:
-    """The worlds of both arms by seed, without pairs of which one died out.
+    """The worlds of both arms by seed, without pairs in which a world died out.
 
     Args:
         worlds: The rows of `worlds.csv`.
@@ -116,9 +113,9 @@ def direction(paired: pl.DataFrame, arm: str, gene: str = SIGHT) -> Floats:
     """The direction of the mean evolved reward: the angle of (food, sight), 0 if only food is liked.
 
     Args:
-        paired: Of `pairs`.
+        paired: The result of `pairs`.
         arm: "slow" or "fast".
-        gene: In place of sight: a neutral gene, as a control.
+        gene: A neutral gene that replaces sight as a control.
 
     Returns:
         One angle per pair [degrees].
@@ -134,43 +131,39 @@ def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
 
     Returns:
         One row per test: "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test),
-        "p_sign_flip", and "p_holm", of the sign flips, since scores against drift have a largest value; null for the
-        primary test.
+        "p_sign_flip", and "p_holm", which corrects the sign flips, since scores against drift have an upper limit; null
+        for the primary test.
     """
     paired = pairs(worlds)
     change = direction(paired, "fast") - direction(paired, "slow")
-    rows = [_row("primary: direction, fast less slow [degrees]", change)]
+    rows = [named_test("primary: direction, fast less slow [degrees]", change)]
     for gene in (SIGHT, FOOD):
         difference = paired[f"{gene}_fast"] - paired[f"{gene}_slow"]
-        rows.append(_row(f"{gene}, fast less slow", difference.to_numpy()))
+        rows.append(named_test(f"{gene}, fast less slow", difference.to_numpy()))
     lived = worlds.filter(pl.col("extinct_step").is_null())
     for arm in ARMS:
         own = lived.filter(pl.col("arm") == arm)
-        rows += [_row(f"{gene}, {arm}, against drift [sd]", own[f"{gene}_score"].to_numpy()) for gene in (SIGHT, FOOD)]
+        rows += [
+            named_test(f"{gene}, {arm}, against drift [sd]", own[f"{gene}_score"].to_numpy()) for gene in (SIGHT, FOOD)
+        ]
     corrected = [None, *holm([row["p_sign_flip"] for row in rows[1:]])]
     return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
 
 
-def neutral_control(worlds: pl.DataFrame) -> list[str]:
-    """The neutral genes that the primary test, made with them in place of sight, would call different."""
+def neutral_control(worlds: pl.DataFrame) -> pl.DataFrame:
+    """The primary test with each neutral gene in place of sight.
+
+    Args:
+        worlds: The rows of `worlds.csv`.
+
+    Returns:
+        One row per neutral gene, as from `named_test`.
+    """
     paired = pairs(worlds)
     names = [name for name in worlds.columns if name.startswith("neutral_") and not name.endswith("_score")]
-    tests = [_row(name, direction(paired, "fast", name) - direction(paired, "slow", name)) for name in names]
-    return [test["test"] for test in tests if test["low"] > 0 or test["high"] < 0]
-
-
-def _row(name: str, values: Floats) -> dict[str, Any]:
-    found = stats.ttest_1samp(values, 0.0)
-    bounds = found.confidence_interval(LEVEL)
-    return {
-        "test": name,
-        "worlds": len(values),
-        "effect": float(values.mean()),
-        "low": float(bounds.low),
-        "high": float(bounds.high),
-        "p": float(np.asarray(found)[1]),
-        "p_sign_flip": paired_contrast(np.zeros_like(values), values).p,
-    }
+    return pl.DataFrame(
+        [named_test(name, direction(paired, "fast", name) - direction(paired, "slow", name)) for name in names]
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -186,12 +179,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
         reduce_runs(given.run, given.out)
         return
     worlds = pl.read_csv(given.folder / WORLDS)
-    means = ["alive_mean", "mean_lifetime", "food_per_step", "generation", SIGHT, FOOD, ACTION]
+    means = ["alive_all_steps", "mean_lifetime", "food_per_step", "generation", SIGHT, FOOD, ACTION]
     with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=48, tbl_width_chars=160):
         extinct = pl.col("extinct_step").is_not_null().sum().alias("extinct")
         print(worlds.group_by("arm", maintain_order=True).agg(pl.len(), extinct, pl.col(means).mean()))
         print(named_tests(worlds))
-    print("neutral genes called different:", json.dumps(neutral_control(worlds)), "of 16")
+    control = neutral_control(worlds)
+    outside = control.filter((pl.col("low") > 0) | (pl.col("high") < 0))["test"].to_list()
+    print(f"{len(outside)} of {control.height} neutral genes have an interval without 0: {', '.join(outside)}")
 
 
 if __name__ == "__main__":

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
-from scipy import stats
 
-from hedon.statistic import LEVEL, holm, paired_contrast
+from hedon.statistic import holm
+from hedon_studies.same_genes_another_learner.named_test import named_test
 
 ARMS: dict[str, str] = {
     "baseline": "",
@@ -136,9 +136,9 @@ def named_tests(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
         One row per test: "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test),
         "p_sign_flip", and "p_holm", null for the primary test.
     """
-    rows = [_row("primary: baseline to fast", direction_change(arms["baseline"], arms["fast"]))]
-    rows += [_row(f"{a} to {b}", direction_change(arms[a], arms[b])) for a, b in CHANGES]
-    rows += [_row(f"hump, {name}", hump(arms[name])["hump"].drop_nulls().to_numpy()) for name in HUMPS]
+    rows = [named_test("primary: baseline to fast", direction_change(arms["baseline"], arms["fast"]))]
+    rows += [named_test(f"{a} to {b}", direction_change(arms[a], arms[b])) for a, b in CHANGES]
+    rows += [named_test(f"hump, {name}", hump(arms[name])["hump"].drop_nulls().to_numpy()) for name in HUMPS]
     corrected = [None, *holm([row["p"] for row in rows[1:]])]
     return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
 
@@ -156,7 +156,7 @@ def neutral_control(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     for name, founders in arms.items():
         neutral = [gene for gene in founders.columns if gene.startswith("neutral_")]
         found = [slopes(founders, "food", (SIGHT, FOOD, ACTION, gene))[gene].drop_nulls() for gene in neutral]
-        tests = [_row(gene, values.to_numpy()) for gene, values in zip(neutral, found, strict=True)]
+        tests = [named_test(gene, values.to_numpy()) for gene, values in zip(neutral, found, strict=True)]
         rows.append(
             {"arm": name, "genes": len(neutral), "excluding_0": sum(t["low"] > 0 or t["high"] < 0 for t in tests)}
         )
@@ -171,20 +171,6 @@ def repeats_the_pilots(tests: pl.DataFrame) -> bool:
     """
     primary = tests.row(0, named=True)
     return primary["low"] > 0 and REPEATS[0] <= primary["effect"] <= REPEATS[1]
-
-
-def _row(name: str, values: Floats) -> dict[str, Any]:
-    found = stats.ttest_1samp(values, 0.0)
-    bounds = found.confidence_interval(LEVEL)
-    return {
-        "test": name,
-        "worlds": len(values),
-        "effect": float(values.mean()),
-        "low": float(bounds.low),
-        "high": float(bounds.high),
-        "p": float(np.asarray(found)[1]),
-        "p_sign_flip": paired_contrast(np.zeros_like(values), values).p,
-    }
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
-"""Landscapes of six learners: the tests that were named before find what is in the founders, and nothing else."""
+"""Same genes, another learner: the tests fixed beforehand find the differences that are there, and no others."""
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -7,6 +8,9 @@ import numpy as np
 import polars as pl
 import pytest
 
+import hedon
+from hedon.config import digest, load_config
+from hedon_studies.same_genes_another_learner import evolution
 from hedon_studies.same_genes_another_learner.landscape import (
     ACTION,
     ARMS,
@@ -101,11 +105,86 @@ def test_the_page_has_the_numbers_of_the_committed_founders():
         assert f"| {found[FOOD].mean():.3f} (" in page
 
 
-def test_every_arm_started_after_its_expectation_was_committed():
-    for run in pl.read_csv(RESULTS / "learner" / "runs.csv").iter_rows(named=True):
+@pytest.mark.parametrize("table", ["runs.csv", "evolution/worlds.csv"])
+def test_every_run_started_after_its_expectation_was_committed(table):
+    for run in pl.read_csv(RESULTS / "learner" / table).iter_rows(named=True):
         assert run["expectation_committed"] < run["started"]
         if (ROOT / ".git").exists():
             shown = subprocess.run(
                 ["git", "show", "-s", "--format=%cI", run["expectation"]], cwd=ROOT, capture_output=True, text=True
             )
             assert shown.returncode or shown.stdout.strip() == run["expectation_committed"]
+
+
+def evolved(seed: int, sight: float, food: float, pairs: int = 60) -> pl.DataFrame:
+    """Rows of worlds: the slow arm settles at (food 0.8, sight 0.4), the fast one at (food, sight), with noise."""
+    rng = np.random.default_rng(seed)
+    arms = {"slow": (0.4, 0.8), "fast": (sight, food)}
+    columns = {
+        name: {SIGHT: at[0] + rng.normal(0, 0.15, pairs), FOOD: at[1] + rng.normal(0, 0.15, pairs)}
+        | {f"{gene}_score": rng.normal(2.0, 1.0, pairs) for gene in (SIGHT, FOOD)}
+        | {f"neutral_{i}": rng.normal(0, 0.3, pairs) for i in range(1, 17)}
+        | {f"neutral_{i}_score": rng.normal(0, 1, pairs) for i in range(1, 17)}
+        for name, at in arms.items()
+    }
+    rows = [
+        pl.DataFrame(
+            {"arm": name, "seed": np.arange(pairs), "extinct_step": pl.Series([None] * pairs, dtype=pl.Int64)}
+        ).hstack(pl.DataFrame(columns[name]))
+        for name in arms
+    ]
+    return pl.concat([row.with_columns(pl.col("arm").cast(pl.String)) for row in rows])
+
+
+def test_a_turned_reward_is_found_and_a_larger_one_is_not():
+    larger = evolution.named_tests(evolved(1, 0.8, 1.6)).row(0, named=True)
+    assert larger["low"] < 0 < larger["high"]
+    turned = evolution.named_tests(evolved(2, 0.8, 1.0))
+    assert turned["test"].len() == 7
+    assert turned["p_holm"].null_count() == 1
+    primary = turned.row(0, named=True)
+    assert primary["effect"] == pytest.approx(np.degrees(np.arctan2(0.8, 1.0) - np.arctan2(0.4, 0.8)), abs=2)
+    assert primary["low"] > 0
+    control = evolution.neutral_control(evolved(3, 0.8, 1.0))
+    assert control.height == 16
+    assert control.filter((pl.col("low") > 0) | (pl.col("high") < 0)).height <= 4
+
+
+def test_pairs_without_an_extinct_world_are_compared():
+    worlds = evolved(4, 0.4, 0.8, pairs=10).with_columns(
+        extinct_step=pl.when((pl.col("arm") == "fast") & (pl.col("seed") == 3)).then(5).otherwise(None)
+    )
+    assert 3 not in evolution.pairs(worlds)["seed"]
+    assert evolution.pairs(worlds).height == 9
+
+
+def test_runs_are_reduced_to_worlds_and_the_genes_of_the_living(tmp_path):
+    config = load_config("appetite", overrides=["learning.learning_rate=0.003", "reward.pay.see_normal.coef=0.2"])
+    hedon.run(hedon.RunPlan(config, [1, 2], 1024, tmp_path / "run", 1))
+    evolution.main(["worlds", str(tmp_path / "run"), "--out", str(tmp_path / "out")])
+    worlds = pl.read_csv(tmp_path / "out" / evolution.WORLDS)
+    genes = pl.read_parquet(tmp_path / "out" / evolution.LIVING)
+    assert worlds["arm"].to_list() == ["fast", "fast"]
+    assert worlds["seed"].to_list() == [1, 2]
+    rows = hedon.open_run(tmp_path / "run").population()
+    alive = [world["agent_steps"].sum() / 1024 for world in rows.partition_by("world")]
+    assert worlds["alive_all_steps"].to_list() == alive
+    means = genes.group_by("seed").agg(pl.col(FOOD).mean()).sort("seed")[FOOD]
+    assert worlds.sort("seed")[FOOD].to_numpy() == pytest.approx(means.to_numpy(), abs=1e-5)
+
+
+def test_the_committed_worlds_are_those_of_the_design():
+    expected = (ROOT / "src/hedon_studies/same_genes_another_learner/expected.md").read_text()
+    command = re.search(r"`hedon run appetite --seeds 1101-1160.*?`", expected, re.DOTALL)
+    assert command
+    settings = re.findall(r"--set (\S+?)`?(?=\s|`|$)", command[0])
+    assert len(settings) == 6
+    worlds = pl.read_csv(RESULTS / "learner" / "evolution" / evolution.WORLDS)
+    assert worlds.select("arm", "seed").is_unique().all()
+    assert worlds["seed"].is_between(1101, 1160).all()
+    for arm, rate in evolution.ARMS.items():
+        config = load_config("appetite", overrides=[*settings, f"learning.learning_rate={rate}"])
+        assert set(worlds.filter(pl.col("arm") == arm)["config_digest"]) == {digest(config)}
+    page = (RESULTS / "learner.md").read_text()
+    fast, slow = (worlds.filter(pl.col("arm") == arm).height for arm in ("fast", "slow"))
+    assert f"{fast} worlds of the fast arm and {slow} of the slow one" in page

@@ -1,0 +1,32 @@
+"""The test that all parts of the study use: is the mean over worlds, or over pairs of worlds, 0?"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from hedon.statistic import LEVEL, paired_contrast
+
+
+def named_test(name: str, values: NDArray[np.float64]) -> dict[str, Any]:
+    """Tests whether the mean of some values is 0.
+
+    Args:
+        name: What expected.md calls the test.
+        values: One per world or pair of worlds, shape (worlds,).
+
+    Returns:
+        "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test) and "p_sign_flip".
+    """
+    found = stats.ttest_1samp(values, 0.0)
+    bounds = found.confidence_interval(LEVEL)
+    return {
+        "test": name,
+        "worlds": len(values),
+        "effect": float(values.mean()),
+        "low": float(bounds.low),
+        "high": float(bounds.high),
+        "p": float(np.asarray(found)[1]),
+        "p_sign_flip": paired_contrast(np.zeros_like(values), values).p,
+    }
