@@ -1,6 +1,6 @@
-"""The catalogue of measures: summaries, tables, comparisons, claims and plots take their numbers from here.
+"""The catalogue of measures: summaries, tables, comparisons, claims and plots take their numbers from it.
 
-A number that is listed here appears in all of them. Measures of genes are made for each gene that worlds have.
+A measure added here appears in all of them. Measures of genes are made for each gene.
 """
 
 from collections.abc import Callable, Mapping
@@ -16,9 +16,16 @@ from hedon.analysis.world.record import WorldRecord
 from hedon.measure.measure import Measure
 from hedon.statistic.interval import AMOUNT, SHARE
 
+_GENES = ("w_", "neutral_")
+"""How the columns of genes begin."""
+
 
 def _has(column: str) -> Callable[[WorldRecord], bool]:
     return lambda world: column in world.population.columns
+
+
+def _hunts(world: WorldRecord) -> bool:
+    return world.hunts
 
 
 def _sum_of(column: str) -> Callable[[WorldRecord], int]:
@@ -48,67 +55,52 @@ def _refused(world: WorldRecord) -> float | None:
 MEASURES: Mapping[str, Measure] = {
     measure.name: measure
     for measure in (
-        Measure("alive", "agents alive at the end", "agents alive at the end", _alive, AMOUNT),
+        Measure("alive", "agents alive at the end", _alive, AMOUNT),
         Measure(
             "alive_mean",
             "agents alive, last tenth",
-            "agents alive, mean over the last tenth of the steps; after its last agent, a world counts as empty",
             _alive_mean,
             AMOUNT,
+            "agents alive, mean over the last tenth of the steps; after extinction a world counts as empty",
             usual=True,
             averaged=True,
         ),
         Measure(
             "extinct",
             "share of worlds extinct",
-            "true if nobody is left",
             lambda world: world.extinct_step is not None,
             SHARE,
+            "true if no agent is left",
             binary=True,
             usual=True,
         ),
-        Measure(
-            "extinct_step", "step of extinction", "step at which nobody was left, or null", lambda w: w.extinct_step
-        ),
-        Measure("births", "children born", "children born", _sum_of("births"), AMOUNT),
-        Measure("deaths", "agents that died", "agents that died", _sum_of("deaths"), AMOUNT),
-        Measure(
-            "births_failed_full",
-            "births that failed at capacity",
-            "births that failed at capacity",
-            _sum_of("births_failed_full"),
-            AMOUNT,
-        ),
-        Measure(
-            "births_failed_space",
-            "births that failed for want of space",
-            "births that failed for want of a free place",
-            _sum_of("births_failed_space"),
-            AMOUNT,
-        ),
-        Measure("refused", "share of births without a place", "share of births that failed", _refused, SHARE),
+        Measure("extinct_step", "step at which the last agent died, or null", lambda world: world.extinct_step),
+        Measure("births", "children born", _sum_of("births"), AMOUNT),
+        Measure("deaths", "agents that died", _sum_of("deaths"), AMOUNT),
+        Measure("births_failed_full", "births that failed at capacity", _sum_of("births_failed_full"), AMOUNT),
+        Measure("births_failed_space", "births that failed for lack of space", _sum_of("births_failed_space"), AMOUNT),
+        Measure("refused", "share of births that failed", _refused, SHARE),
         Measure(
             "deaths_starved",
             "agents that starved",
-            "agents that starved",
             _sum_of("deaths_starved"),
             AMOUNT,
-            applies=_has("deaths_starved"),
+            condition=_has("deaths_starved"),
         ),
         Measure(
             "deaths_eaten",
             "agents that were eaten",
-            "agents that were eaten; where agents eat agents",
             _sum_of("deaths_eaten"),
             AMOUNT,
-            applies=_has("deaths_eaten"),
+            "agents that were eaten; only if agents eat agents",
+            condition=_has("deaths_eaten"),
         ),
         Measure(
             "mean_lifetime",
             "lifetime of the dead [step]",
-            "mean lifetime of the dead [step]; too small where many still live, see `alive`",
             lambda world: mean_lifetime(world.born),
             AMOUNT,
+            "mean lifetime of the dead [step]; too small if many are still alive, see `alive`",
             ratio=True,
             usual=True,
             averaged=True,
@@ -116,15 +108,13 @@ MEASURES: Mapping[str, Measure] = {
         Measure(
             "mean_lifetime_born",
             "lifetime of the dead without founders [step]",
-            "the same without the founders [step]",
             lambda world: mean_lifetime(world.born, born_in_run=True),
             AMOUNT,
             ratio=True,
         ),
         Measure(
             "mean_lifetime_last",
-            "lifetime of those who died last [step]",
-            "the same over the 5000 that died last [step]",
+            "lifetime of the last 5000 to die [step]",
             lambda world: mean_lifetime(world.born, last=LAST_AGENTS),
             AMOUNT,
             ratio=True,
@@ -132,18 +122,18 @@ MEASURES: Mapping[str, Measure] = {
         Measure(
             "food_per_step",
             "food per step, mean over agents [1/step]",
-            "mean over the dead of foods eaten / lifetime [1/step]; null for who eats no food",
             lambda world: food_per_step(world.agents, world.food_kinds),
             AMOUNT,
+            "foods eaten / lifetime, mean over the dead [1/step]; null for species that eat no food",
             ratio=True,
             averaged=True,
         ),
         Measure(
             "food_per_agent_step",
             "food per agent and step",
-            "foods eaten by all / steps lived by all [1/step]; null for who eats no food",
             lambda world: food_per_agent_step(world.population, world.food_kinds),
             AMOUNT,
+            "foods eaten by all / steps lived by all [1/step]; null for species that eat no food",
             ratio=True,
             usual=True,
             averaged=True,
@@ -151,74 +141,73 @@ MEASURES: Mapping[str, Measure] = {
         Measure(
             "prey_per_step",
             "agents eaten per step, mean over agents [1/step]",
-            "mean over the dead of agents eaten / lifetime [1/step]; null for a species that eats no agents",
             lambda world: food_per_step(world.agents, world.prey),
             AMOUNT,
+            "agents eaten / lifetime, mean over the dead [1/step]; null for species that eat no agents",
             ratio=True,
             averaged=True,
-            applies=lambda world: world.hunts,
+            condition=_hunts,
         ),
         Measure(
             "prey_per_agent_step",
             "agents eaten per agent and step",
-            "agents eaten by all / steps lived by all [1/step]; likewise",
             lambda world: food_per_agent_step(world.population, world.prey),
             AMOUNT,
+            "agents eaten by all / steps lived by all [1/step]; null for species that eat no agents",
             ratio=True,
             usual=True,
             averaged=True,
-            applies=lambda world: world.hunts,
+            condition=_hunts,
         ),
         Measure(
             "mean_energy",
             "mean energy, last tenth",
-            "energy of the living, mean over the last tenth of the steps; none in a world that died out",
             _energy,
             AMOUNT,
+            "energy of the living, mean over the last tenth of the steps; null if the world is extinct",
             usual=True,
             averaged=True,
         ),
         Measure(
             "generation",
             "mean generation at the end",
-            "mean generation of the living at the end, or when somebody lived last",
             lambda world: last_generation(world.population),
             AMOUNT,
+            "mean generation of the living at the end, or of the last to live",
             averaged=True,
         ),
     )
 }
-"""Every measure but those of genes, by name."""
+"""All measures except those of genes, by name."""
 
 
 def gene_mean(gene: str) -> Measure:
-    """The mean of a gene among the living at the end, or when somebody lived last."""
+    """The mean of a gene among the living at the end, or among the last to live."""
     title, usual = f"mean of {gene}", gene.startswith("w_")
 
     def of(world: WorldRecord) -> float | None:
         return end_mean(gene, world) if gene in world.weight_names else None
 
-    return Measure(f"{gene}_mean", title, title, of, usual=usual)
+    return Measure(f"{gene}_mean", title, of, usual=usual)
 
 
 def last_born_mean(gene: str) -> Measure:
-    """The mean of a gene over the 5000 agents born last, as the paper shows it."""
-    title = f"{gene}, agents born last"
+    """The mean of a gene among the 5000 agents born last, which is what the paper shows."""
 
     def of(world: WorldRecord) -> float | None:
         return last_mean(gene, world) if gene in world.weight_names else None
 
-    return Measure(f"{gene}_last", title, title, of)
+    return Measure(f"{gene}_last", f"{gene}, agents born last", of)
 
 
 def column_measure(column: str) -> Measure | None:
-    """The measure of a table's column; None for one of another kind.
+    """The measure that a column of a table holds; None if it holds something else.
 
     Where worlds have several species, "prey.alive_mean" is a measure of the species prey, and its title says so.
     """
     species, _, name = column.rpartition(".")
     found = MEASURES.get(name)
-    if found is None and name.endswith("_mean"):
+    if found is None and name.endswith("_mean") and name.startswith(_GENES):
         found = gene_mean(name.removesuffix("_mean"))
     if found is None or not species:
         return found

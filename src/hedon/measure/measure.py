@@ -1,4 +1,4 @@
-"""What a measure is: one number of a world, or of one species of it, under one name wherever it is shown."""
+"""What a measure is: one number of a world, or of one species in it, with the same name wherever it appears."""
 
 import math
 from collections.abc import Callable
@@ -7,41 +7,50 @@ from dataclasses import dataclass
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.interval import ANY
 
-
-def _always(_world: WorldRecord) -> bool:
-    return True
+WorldNumber = Callable[[WorldRecord], float | None]
+"""Computes one number of a world; None if the world has none."""
 
 
 @dataclass(frozen=True)
 class Measure:
-    """One number of a world, or of one species of it.
+    """One number of a world, or of one species in it.
 
     Attributes:
         name: Its key in summaries and its column in tables.
-        title: What figures and tables of several worlds call it, with its unit.
-        meaning: What it is, for the documentation of files.
-        of: The number of a world; None where it has none.
-        within: Bounds of what its mean over worlds can be.
+        title: Its label in figures and tables, with the unit.
+        of: Computes the number of a world; None if the world has none.
+        within: The smallest and the largest value that its mean over worlds can have.
+        meaning: What the documentation of files says about it, if that is more than the title.
         ratio: Whether worlds are compared by the logarithm, so that effects are ratios.
-        binary: Whether it is yes or no, so that its mean is a share.
-        usual: Whether a comparison shows it unless told otherwise.
-        averaged: Whether a summary has its mean over worlds.
-        applies: Whether worlds of this kind have it at all, as none has prey where no agents are eaten.
+        binary: Whether it is true or false, so that its mean is a share.
+        usual: Whether comparisons show it by default.
+        averaged: Whether summaries contain its mean over worlds.
+        condition: Tells whether a world can have the number at all, as only worlds with predators have prey; None if
+            all worlds can.
     """
 
     name: str
     title: str
-    meaning: str
-    of: Callable[[WorldRecord], float | None]
+    of: WorldNumber
     within: tuple[float, float] = ANY
+    meaning: str = ""
     ratio: bool = False
     binary: bool = False
     usual: bool = False
     averaged: bool = False
-    applies: Callable[[WorldRecord], bool] = _always
+    condition: Callable[[WorldRecord], bool] | None = None
+
+    @property
+    def documentation(self) -> str:
+        """The meaning, or the title if it says everything."""
+        return self.meaning or self.title
+
+    def applies(self, world: WorldRecord) -> bool:
+        """Whether the world can have the number."""
+        return self.condition is None or self.condition(world)
 
     def value(self, world: WorldRecord) -> float | None:
-        """The number of a world; None where it has none or, for a ratio, where it is not above 0."""
+        """The number of a world; None if it has none or, for a ratio, if it is not above 0."""
         found = self.of(world)
         return None if found is None or not math.isfinite(found) or (self.ratio and found <= 0) else float(found)
 
@@ -50,5 +59,5 @@ class Measure:
         return math.log(value) if self.ratio else value
 
     def unscaled(self, value: float | None) -> float | None:
-        """Back from that scale: of a difference, the difference or the ratio."""
+        """A number back from that scale; a difference of logarithms becomes a ratio."""
         return math.exp(value) if self.ratio and value is not None else value

@@ -1,4 +1,4 @@
-"""What studies measure of each world, and the age up to which lifetimes of several worlds can be compared."""
+"""What studies measure in each world, and the age up to which the lifetimes of several worlds can be compared."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -15,14 +15,14 @@ from hedon.statistic.survival import SurvivalCurve, restricted_mean, survival_cu
 _NEGLIGIBLE = 0.01
 """Share of a mean lifetime that may lie beyond the age up to which a curve is trusted."""
 RESTRICTED = "restricted_lifetime"
-"""The measure that depends on the worlds that it is compared with: see `common_age`."""
+"""The measure that depends on the worlds it is compared with; see `common_age`."""
 
 
 def restricted_lifetime(until: float) -> Measure:
-    """Mean of min(lifetime, an age), the living counted as censored.
+    """The mean of min(lifetime, an age), with the living as censored.
 
     Args:
-        until: The age [step]; no world has the number at 0.
+        until: The age [step]; at 0 no world has the number.
     """
 
     def of(world: WorldRecord) -> float | None:
@@ -30,7 +30,7 @@ def restricted_lifetime(until: float) -> Measure:
         return restricted_mean(curve, until).mean if until and len(curve.age) else None
 
     title = "lifetime, the living counted [step]"
-    return Measure(RESTRICTED, title, "mean of min(lifetime, an age that all worlds share)", of, AMOUNT, ratio=True)
+    return Measure(RESTRICTED, title, of, AMOUNT, "mean of min(lifetime, an age that all worlds share)", ratio=True)
 
 
 def _size_of(measure: Measure) -> Measure:
@@ -38,8 +38,7 @@ def _size_of(measure: Measure) -> Measure:
         value = measure.of(world)
         return None if value is None else abs(value)
 
-    title = f"|{measure.title}|"
-    return replace(measure, name=f"{measure.name}_size", title=title, meaning=f"size of {title}", of=of, within=AMOUNT)
+    return replace(measure, name=f"{measure.name}_size", title=f"|{measure.title}|", of=of, within=AMOUNT)
 
 
 _NEUTRAL = last_born_mean("neutral_1")
@@ -58,11 +57,11 @@ RESPONSES: tuple[Measure, ...] = (
     MEASURES["mean_energy"],
     MEASURES["extinct"],
 )
-"""What studies measure of a baseline world; lifetimes with the living get their age from `at_common_age`."""
+"""What studies measure in a baseline world; `at_common_age` sets the age of the restricted lifetime."""
 
 
 def at_common_age(measures: Iterable[Measure], until: float) -> list[Measure]:
-    """The same measures, where lifetimes with the living are averaged up to an age.
+    """The same measures, with restricted lifetimes up to this age.
 
     Args:
         measures: Any measures.
@@ -95,11 +94,11 @@ def _readable(curve: SurvivalCurve, trusted: float, until: float) -> bool:
     return left * (until - trusted) <= _NEGLIGIBLE * restricted_mean(curve, trusted).mean
 
 
-def values(world: WorldRecord, measures: Sequence[Measure]) -> dict[str, float | None]:
-    """All numbers of one world, by name.
+def measured(world: WorldRecord, measures: Sequence[Measure]) -> dict[str, float | None]:
+    """The measures of one world, by name.
 
     Args:
         world: A world with its agents.
-        measures: What is asked of it.
+        measures: Which of them to compute.
     """
     return {measure.name: measure.value(world) for measure in measures}

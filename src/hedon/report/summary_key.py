@@ -18,16 +18,16 @@ _BEGIN: dict[str, str] = {
 }
 
 
-def _averaged(*, hunting: bool) -> dict[str, str]:
-    """The means of measures, by name."""
-    said = {each.name: f"worlds' `{each.name}` as mean and interval" for each in MEASURES.values() if each.averaged}
-    return {name: text for name, text in said.items() if name.startswith("prey_") == hunting}
+def _averaged(*, everywhere: bool) -> dict[str, str]:
+    """The means over worlds, by name: of measures that all worlds have, or of the others."""
+    averaged = [each.name for each in MEASURES.values() if each.averaged and (each.condition is None) == everywhere]
+    return {name: f"worlds' `{name}`, mean and interval" for name in averaged}
 
 
 MEAN_KEYS: dict[str, str] = {
     "agents": "agents in the record, dead and alive",
     "extinct_worlds": "number of worlds in which nobody is left",
-    **_averaged(hunting=False),
+    **_averaged(everywhere=True),
     "weights": "by genome column: worlds' mean weight as mean and interval; neutral markers show drift alone",
     "pooled": "over the dead of all worlds, each agent alike: agents, mean_lifetime, food_per_step",
     "surviving": "the same means and intervals without the extinct worlds, which papers tend to replace",
@@ -54,7 +54,7 @@ SEVERAL_KEYS: dict[str, str] = {
 }
 """Keys of a run with several species."""
 
-HUNT_KEYS: dict[str, str] = _averaged(hunting=True)
+HUNT_KEYS: dict[str, str] = _averaged(everywhere=False)
 """Beside `MEAN_KEYS` where agents eat agents."""
 
 INTERVAL_KEYS: dict[str, str] = {
@@ -70,9 +70,8 @@ _WORLD: dict[str, str] = {
     "steps_per_second": "steps of this world per second, all worlds sharing the machine; or null",
 }
 
-_CAUSES = ("deaths_starved", "deaths_eaten", "prey_per_step", "prey_per_agent_step")
 FARE_KEYS: dict[str, str] = {
-    **{each.name: each.meaning for each in MEASURES.values() if each.name not in _CAUSES},
+    **{each.name: each.documentation for each in MEASURES.values() if each.condition is None},
     "eaten": "by food kind: foods eaten; and by species: agents eaten",
     "weights": "by genome column: mean and sd over the living at the end, or when somebody lived last",
     "ledger": "sums of energy: initial, eaten, forgiven, basic, action, capped, lost, shared, final; and "
@@ -94,5 +93,5 @@ WORLD_SEVERAL_KEYS: dict[str, str] = {
 }
 """Keys of a world with several species."""
 
-CAUSE_KEYS: dict[str, str] = {name: MEASURES[name].meaning for name in _CAUSES}
+CAUSE_KEYS: dict[str, str] = {each.name: each.documentation for each in MEASURES.values() if each.condition is not None}
 """Beside `FARE_KEYS` where agents die of more than age and energy."""

@@ -8,7 +8,6 @@ from .census import stack as stack
 from .census import steps_reached as steps_reached
 from .census import world_indices as world_indices
 from .claim import Claim as Claim
-from .claim import Measure as Measure
 from .claim import Order as Order
 from .gather import gather as gather
 from .item import Condition as Condition

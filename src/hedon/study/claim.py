@@ -6,16 +6,12 @@ gives a count of its worlds.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from hedon.analysis.world.record import WorldRecord
+from hedon.measure.measure import WorldNumber
 from hedon.statistic.interval import LEVEL
 from hedon.study.item import Condition
-
-Measure = Callable[[WorldRecord], float | None]
-"""The figure of one world; None where it has none."""
 
 OverWorlds = Literal["mean", "ratio", "spread", "distance", "share", "extinction", "modes", "walk", "setting"]
 """How the figures of several worlds are summed up."""
@@ -51,7 +47,7 @@ class Claim:
     name: str
     condition: Condition
     text: str
-    measure: Measure
+    measure: WorldNumber
     over_worlds: OverWorlds
     reported: str
     low: float = -math.inf
@@ -84,7 +80,7 @@ class Order:
     first: Condition
     second: Condition
     text: str
-    measure: Measure
+    measure: WorldNumber
     comparison: Comparison
     reported: str
     low: float = -math.inf

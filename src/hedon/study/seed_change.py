@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from hedon.measure.measure import Measure
-from hedon.measure.response import at_common_age, common_age, values
+from hedon.measure.response import at_common_age, common_age, measured
 from hedon.statistic.interval import Interval, mean_interval
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.study.census import missing, sentences
@@ -30,7 +30,7 @@ def world_rows(
     asked = at_common_age(measures, until)
     return [
         {"condition": label, "seed": world.seed, "steps": world.last_step, "died_out": world.extinct_step is not None}
-        | values(world, asked)
+        | measured(world, asked)
         | {"until": until}
         for label, world in there
     ]
@@ -69,7 +69,7 @@ def read_change(before: str, after: str) -> str:
 
 
 def change(rows: Sequence[dict[str, Any]], measure: Measure, before: str, after: str) -> Iterator[dict[str, Any]]:
-    """One measure of two conditions and its change seed by seed, where both conditions or one of them have it.
+    """One measure in two conditions, and its change seed by seed; nothing if neither condition has it.
 
     Args:
         rows: of `world_rows`.

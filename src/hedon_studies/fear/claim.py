@@ -17,7 +17,8 @@ from functools import partial
 
 from hedon.analysis import WorldRecord
 from hedon.config import hunters
-from hedon.study import Claim, Condition, Measure, Order
+from hedon.measure import WorldNumber
+from hedon.study import Claim, Condition, Order
 from hedon_studies.kanagawa_doya_2024.claim import score
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
@@ -55,7 +56,7 @@ def _obstacle_fear(world: WorldRecord) -> float | None:
     return None if found is None else -found
 
 
-def _beyond_drift(measure: Measure, world: WorldRecord) -> float | None:
+def _beyond_drift(measure: WorldNumber, world: WorldRecord) -> float | None:
     """By how much a score is further above 0 than 97.5 % of neutral genes; None as for the score."""
     found = measure(world)
     return None if found is None else found - FAR

@@ -10,12 +10,7 @@ from functools import partial
 
 from scipy import optimize
 
-from hedon.analysis import (
-    LAST_AGENTS,
-    WorldRecord,
-    last_mean,
-    standard_drift,
-)
+from hedon.analysis import LAST_AGENTS, WorldRecord, last_mean, standard_drift
 from hedon.demography import cumulative_hazard
 from hedon.measure import MEASURES
 from hedon.study import Claim, Condition

@@ -33,7 +33,6 @@ SCALE = Scale((1, 2), 1_024_000)
 _HALF_WAY = Measure(
     "half_way_weight",
     "weight of food at which agents eat half-way to the best",
-    "weight of food at which agents eat half-way between those with negative weights and those of the best bin",
     lambda world: half_way_weight(appetite(world)),
 )
 _ASKED = (*RESPONSES, _HALF_WAY)

@@ -22,7 +22,7 @@ SCALE = Scale(tuple(range(1, 13)), 1_024_000)
 _PAPER_COSTS = (0.001, 2e-5)
 _GROUPS = {"all": FATES, "not extinct": (STANDING, HEADING), STANDING: (STANDING,)}
 _COMPARED = ("w_normal_last", "w_action_last", "mean_lifetime", "food_per_step", "alive_mean", "generation")
-"""Measures that the paper says something of."""
+"""Measures on which the paper reports."""
 
 _DRAWN = "A line per world; a cross ends that of a world whose record ends before the longest."
 _WEIGHTS = (
@@ -102,7 +102,7 @@ def _survivor_rows(rows: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]
 
 
 def _paper(name: str) -> str:
-    """What the paper says of a measure in the baseline."""
+    """What the paper reports for a measure in the baseline."""
     said = PAPER["baseline"]
     texts = {
         "w_normal_last": "mostly above 4",

@@ -13,7 +13,7 @@ from hedon.analysis import WorldRecord, read_worlds
 from hedon.cli.display.summary import summary_table
 from hedon.measure.catalogue import MEASURES, column_measure, gene_mean
 from hedon.measure.measure import Measure
-from hedon.measure.response import at_common_age, values
+from hedon.measure.response import at_common_age, measured
 from hedon.record.reader import open_run
 from hedon.report.summary import summarize
 from hedon.statistic.interval import AMOUNT
@@ -32,7 +32,7 @@ def test_one_entry_is_seen_in_summary_table_comparison_and_claims(
     def crowd(world: WorldRecord) -> int:
         return int(world.population["alive"].to_numpy().max())
 
-    entry = Measure("crowd", "largest number alive", "agents alive", crowd, AMOUNT, usual=True, averaged=True)
+    entry = Measure("crowd", "largest number alive", crowd, AMOUNT, usual=True, averaged=True)
     assert isinstance(MEASURES, dict)
     monkeypatch.setitem(MEASURES, entry.name, entry)
 
@@ -49,17 +49,18 @@ def test_one_entry_is_seen_in_summary_table_comparison_and_claims(
     table = pl.DataFrame(world_rows(summary, ["0"] * 3))
     compared = responses(table, (), ())  # what comparisons, power, figures and reports of many worlds show
     assert compared["crowd"] == "largest number alive"
+    assert responses(table.rename({"crowd": "prey.crowd"}), (), ())["prey.crowd"] == "largest number alive: prey"
     assert points(table, (), "crowd")[0].mean.mean == pytest.approx(sum(expected) / 3)
 
     asked = at_common_age((MEASURES["crowd"],), 0.0)  # as studies and their claims ask for it
-    assert [values(world, asked)["crowd"] for world in read_worlds([run])] == expected
+    assert [measured(world, asked)["crowd"] for world in read_worlds([run])] == expected
 
 
 def test_a_number_that_is_no_ratio_or_not_finite_is_none(folder: Path) -> None:
     [world, *_] = read_worlds([open_run(folder)])
-    assert Measure("m", "t", "m", lambda _: 0.0, ratio=True).value(world) is None
-    assert Measure("m", "t", "m", lambda _: math.nan).value(world) is None
-    assert Measure("m", "t", "m", lambda _: 0.0).value(world) == 0.0
+    assert Measure("m", "t", lambda _: 0.0, ratio=True).value(world) is None
+    assert Measure("m", "t", lambda _: math.nan).value(world) is None
+    assert Measure("m", "t", lambda _: 0.0).value(world) == 0.0
 
 
 def test_columns_name_the_measure_and_its_species(folder: Path) -> None:
@@ -73,7 +74,8 @@ def test_columns_name_the_measure_and_its_species(folder: Path) -> None:
     assert weight.usual
     assert weight.value(world) == gene_mean("w_normal").value(world) is not None
     assert column_measure("cost") is None
+    assert column_measure("food.normal.gene.initial_mean") is None  # a setting
 
 
 def test_every_entry_has_a_name_a_title_and_a_meaning() -> None:
-    assert all(entry.name == key and entry.title and entry.meaning for key, entry in MEASURES.items())
+    assert all(entry.name == key and entry.title and entry.documentation for key, entry in MEASURES.items())

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+import polars as pl
 import pytest
 from numpy.typing import NDArray
 from synthetic_run import write_run
@@ -73,6 +74,7 @@ ALIKE = {
 }
 """By the name of an order: figures of two conditions that do not differ."""
 EVERY: Sequence[Claim] = [claim for claim in (*CLAIMS, *SEQUEL_CLAIMS) if claim.over_worlds != "extinction"]
+FOOD = [claim for claim in CLAIMS if claim.name == "food per step"]
 EXTINCTION = [claim for claim in (*CLAIMS, *SEQUEL_CLAIMS) if claim.over_worlds == "extinction"]
 PAIRS: Sequence[Order] = (*ORDERS, *SEQUEL_ORDERS)
 
@@ -90,6 +92,16 @@ def test_a_rule_fails_its_control(claim: Claim, worlds: list[WorldRecord]) -> No
     asked = replace(claim, measure=lambda world: float(figures[world.seed - 1]), steps=0)
     verdict = judge(asked, "control", worlds).verdict
     assert verdict == expected if expected else verdict != HOLDS
+
+
+@pytest.mark.parametrize(
+    "claim", [each for each in EVERY if each.name == "food per step"], ids=lambda c: c.condition.label
+)
+def test_worlds_without_food_count_against_a_rate_of_food(claim: Claim, worlds: list[WorldRecord]) -> None:
+    hungry = [replace(world, agents=world.agents.with_columns(eaten_normal=pl.lit(0))) for world in worlds]
+    found = judge(replace(claim, steps=0), "control", hungry)
+    assert found.worlds == WORLDS, "a rate of 0 is a number"
+    assert found.verdict != HOLDS
 
 
 @pytest.mark.parametrize("claim", EXTINCTION, ids=lambda claim: claim.condition.label)

@@ -13,7 +13,7 @@ from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config import diff, digest, load_config
 from hedon.figure.named import NamedFigure
 from hedon.measure import MEASURES
-from hedon.measure.response import RESPONSES, at_common_age, common_age, values
+from hedon.measure.response import RESPONSES, at_common_age, common_age, measured
 from hedon.record.reader import open_run
 from hedon.report.table import cells
 from hedon.study.item import Item, ItemInputs
@@ -118,7 +118,7 @@ def test_missing_cells_are_named(worlds: list[WorldRecord]) -> None:
 
 def test_an_extinct_world_counts_as_empty(worlds: list[WorldRecord]) -> None:
     assert worlds[1].end_step == 60 * 1024
-    found = values(worlds[1], at_common_age(RESPONSES, common_age(worlds)))
+    found = measured(worlds[1], at_common_age(RESPONSES, common_age(worlds)))
     assert (found["alive_mean"], found["extinct"], found["mean_energy"]) == (0.0, 1.0, None)
     assert found["mean_lifetime"] is not None
     assert found["restricted_lifetime"] is not None

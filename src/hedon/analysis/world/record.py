@@ -41,7 +41,7 @@ class WorldRecord:
         population: its rows of the table `population`, by step.
         last_step: up to which the records reach [step].
         first_step: at which they begin: 0, or where the run branched off another [step].
-        planned_step: to which the worlds of its run were to go, or have gone so far [step].
+        planned_step: the last step planned for its run, or reached so far if the run is unfinished [step].
         hunts: whether any species of its world eats agents.
         extinct_step: at which nobody was left [step]; None while somebody lives.
         apart_step: at which the first of the world's other species was gone [step]; None while all of them live.
@@ -69,7 +69,7 @@ class WorldRecord:
 
     @property
     def end_step(self) -> int:
-        """Up to which step numbers of the world are told [step]: once it has died out, the rest counts as empty."""
+        """The step at which measures of the world end [step]; from its extinction to this step it counts as empty."""
         return max(self.planned_step, self.last_step)
 
     @property
@@ -268,7 +268,7 @@ def _records(
 
 
 def _planned_step(run: Run, population: pl.DataFrame) -> int:
-    """Up to which step all worlds of a run were to go, or have gone so far; at least 1 [step]."""
+    """The last step planned for all worlds of a run, or reached so far if it is unfinished; at least 1 [step]."""
     manifest = run.manifest
     longest = max(manifest.steps_done, default=0)
     recorded = int(population["step"].to_numpy().max(initial=0))
