@@ -211,7 +211,7 @@ def test_bounds_hold_what_genes_and_rounding_make():
         "sensor.observes.one=0.06",
     ]
     settings += ["food.normal.gives.energy=40", "population.initial_count=60"]
-    worlds = make("baseline", 2, overrides=settings, render_mode=None)
+    worlds = make("baseline", 2, seed=1, overrides=settings)
     columns, most = worlds.groups["agent"].columns, 0.0
     for _ in range(60):
         worlds.step(worlds.actions)
@@ -223,9 +223,9 @@ def test_bounds_hold_what_genes_and_rounding_make():
 
 def test_spaces_are_those_of_what_is_seen_and_done():
     """Every observation is within its bounds, and those that are finite are reached."""
-    both = make("predator", 2, render_mode=None)
+    both = make("predator", 2, seed=1)
     assert set(both.single_observation_space.spaces) == {"prey", "predator"}
-    worlds = make("predator", 2, species="prey", actions="force", repeat=20)
+    worlds = make("predator", 2, seed=1, species="prey", actions="force", repeat=20)
     space, motor = worlds.single_observation_space, worlds.config.species["prey"].motor
     assert worlds.single_action_space == Box(motor.min_force, motor.max_force, (2,), np.float32)
     assert make("predator", species="prey", actions="logit").single_action_space == Box(

@@ -40,7 +40,7 @@ def test_two_environments_in_two_threads_do_not_disturb_each_other():
 
 
 def test_worlds_that_die_out_stand_still_while_others_go_on():
-    worlds = make(DOOMED, 6, threads=1)
+    worlds = make(DOOMED, 6, seed=1, threads=1)
     group = worlds.groups["agent"]
     ends = []
     for _ in range(60):
@@ -69,7 +69,7 @@ def test_an_extinct_world_says_so_once_and_then_nothing():
 
 def test_who_takes_the_slot_of_the_dead_is_someone_else():
     """Births come before deaths, so an agent cannot die in the step of its birth; slots are used again."""
-    worlds = make(CROWD, 4, threads=1)
+    worlds = make(CROWD, 4, seed=1, threads=1)
     group = worlds.groups["agent"]
     seen = [set(row[row >= 0]) for row in group.ids]
     for _ in range(40):
