@@ -35,7 +35,7 @@ WORLDS, LIVING = "worlds.csv", "living.parquet"
 Floats = NDArray[np.float64]
 
 
-def worldnamed_test(world: WorldRecord, run: Run) -> dict[str, Any]:
+def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
     """The row of `worlds.csv` that describes one world.
 
     Args:
@@ -87,7 +87,7 @@ def reduce_runs(folders: Iterable[Path], out: Path) -> None:
     for folder in folders:
         run = open_run(folder)
         for world in read_worlds([run]):
-            rows.append(worldnamed_test(world, run))
+            rows.append(world_row(world, run))
             genes.append(living(world))
     out.mkdir(parents=True, exist_ok=True)
     pl.DataFrame(rows, infer_schema_length=None).sort("arm", "seed").write_csv(out / WORLDS)
