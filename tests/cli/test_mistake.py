@@ -7,8 +7,8 @@ import polars as pl
 import pytest
 from command import hedon
 
-from hedon.sweep.contrast import two_of
-from hedon.sweep.error import SweepError
+from hedon.compare.contrast import choose_levels
+from hedon.compare.error import CompareError
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,15 @@ def test_what_a_session_draws_on_does_not_matter(tmp_path):
 
 def test_values_of_a_factor_are_numbers():
     values = pl.Series([30.0, 120.0, 300.0]).to_list()
-    assert two_of("growth", values, "30,120") == (30.0, 120.0)
-    assert two_of("growth", values, "3e1, 120.00") == (30.0, 120.0)
-    with pytest.raises(SweepError, match="there are 30"):
-        two_of("growth", values, "30,31")
+    assert choose_levels("growth", values, "30,120") == (30.0, 120.0)
+    assert choose_levels("growth", values, "3e1, 120.00") == (30.0, 120.0)
+    with pytest.raises(CompareError, match="there are 30"):
+        choose_levels("growth", values, "30,31")
+
+
+def test_values_may_contain_commas():
+    labels = ["predator", "prey, alone", "prey, many"]
+    assert choose_levels("condition", labels, "predator,prey, alone") == ("predator", "prey, alone")
+    assert choose_levels("condition", labels, "prey, alone,prey, many") == ("prey, alone", "prey, many")
+    with pytest.raises(CompareError, match="there are predator; prey, alone; prey, many"):
+        choose_levels("condition", labels, "prey,predator")

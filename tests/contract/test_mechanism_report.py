@@ -25,13 +25,13 @@ from hedon.analysis.world.regime import regimes
 from hedon.analysis.world.species import by_species
 from hedon.assay.end import read_ends
 from hedon.cli.display.summary import summary_table
+from hedon.compare.response import responses
 from hedon.config.load import load_config
 from hedon.error import ArgumentError
 from hedon.record.reader import Run, open_run
 from hedon.report.run import write_report
 from hedon.report.summary import summarize
 from hedon.report.summary_key import CAUSE_KEYS, FARE_KEYS, HUNT_KEYS, MEAN_KEYS, SEVERAL_KEYS, WORLD_SEVERAL_KEYS
-from hedon.sweep.response import responses
 from hedon.sweep.row import world_rows
 
 DIFFERENT = "species that differ in everything"

@@ -1,4 +1,4 @@
-"""What is public in the package is documented: each argument, the shape of each array, each error that it raises.
+"""What public packages export is documented: each argument, the shape of each array, each error that it raises.
 
 Ruff's D417 compares a section of arguments with the arguments, and asks for none; its DOC501 also asks for errors that
 a function raises and catches itself, and for those of private functions.
@@ -7,6 +7,7 @@ a function raises and catches itself, and for those of private functions.
 import ast
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from textwrap import dedent
 
 import pytest
@@ -17,6 +18,8 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 SOURCE = ROOT / "src"
 
 FILES = [path for path in sorted(SOURCE.rglob("*.py")) if "_engine" not in path.parts]
+EXPORT = re.compile(r"^from \.([\w.]*) import (\w+)", re.MULTILINE)
+"""A line of the stub of a public package."""
 ARRAY = re.compile(r"\b(NDArray|ndarray|ArrayLike)\b")
 OPTION = re.compile(r"\btyper\.(Option|Argument)\b")
 """An argument of a command, which its help documents."""
@@ -61,6 +64,16 @@ def public(tree: ast.Module | ast.ClassDef, path: str = "") -> Iterator[tuple[st
             own = after.value.value if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant) else ""
             if not node.target.id.startswith("_"):
                 yield path + node.target.id, node, f"{own}\n{section(doc, 'Attributes').get(node.target.id, '')}"
+
+
+def exported() -> dict[Path, set[str]]:
+    """The names that public packages export, by the files that define them."""
+    found: dict[Path, set[str]] = {}
+    for stub in SOURCE.rglob("__init__.pyi"):
+        for module, name in EXPORT.findall(stub.read_text()):
+            home = stub.parent.joinpath(*module.split(".")).with_suffix(".py")
+            found.setdefault(home, set()).add(name)
+    return found
 
 
 def is_overload(node: Function) -> bool:
@@ -138,6 +151,13 @@ def test_what_a_docstring_lacks_is_found(source):
     assert len(list(faults(ast.parse(source)))) == 1
 
 
-def test_public_functions_say_their_arguments_and_the_shapes_of_arrays():
-    missing = [f"{path.relative_to(ROOT)}: {fault}" for path in FILES for fault in faults(ast.parse(path.read_text()))]
+def test_exported_functions_say_their_arguments_and_the_shapes_of_arrays():
+    names = exported()
+    assert sum(len(own) for path, own in names.items() if path.is_file()) > 100
+    missing = [
+        f"{path.relative_to(ROOT)}: {fault}"
+        for path in FILES
+        for fault in faults(ast.parse(path.read_text()))
+        if re.split(r"[.:]", fault)[0] in names.get(path, ())
+    ]
     assert not missing, f"{len(missing)} missing:\n" + "\n".join(missing)

@@ -10,7 +10,7 @@ from nbformat import NotebookNode, read
 
 ROOT = Path(__file__).parents[2]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
-PICTURES = {"contrast": 1, "descent": 1, "first_run": 1, "own_reward": 0, "power": 1}
+PICTURES = {"compare": 1, "descent": 1, "first_run": 1, "own_reward": 0, "power": 1}
 """How many cells show one."""
 
 

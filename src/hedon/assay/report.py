@@ -9,7 +9,7 @@ from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.resample import Estimate
 from hedon.assay.sample import Sample
 from hedon.config.dump import digest
-from hedon.report.answer import Answer
+from hedon.report.answer import WORLDS, Answer
 
 
 def assay_answer(
@@ -57,12 +57,12 @@ def assay_answer(
 
 
 def world_table(rows: Sequence[Mapping[str, Any]]) -> ResultTable:
-    """What was found in each world by itself, from which `hedon power` takes how much worlds differ.
+    """What was found in each world by itself, for `hedon compare` and `hedon power`.
 
     Args:
         rows: a row per world, with its seed.
     """
-    return make_table("world", "Each world by itself", rows, shown=False)
+    return make_table(WORLDS, "Each world by itself", rows, shown=False)
 
 
 def world_line(samples: Sequence[Sample]) -> str:

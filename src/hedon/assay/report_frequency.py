@@ -12,7 +12,9 @@ from hedon.assay.frequency import VERDICTS, Frequency, estimate_frequency
 from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, styled
-from hedon.report.answer import Answer
+from hedon.report.answer import FACTORS, Answer
+
+START = "share at the start"
 
 
 def frequency_answer(
@@ -32,11 +34,11 @@ def frequency_answer(
     pairs = zip(shares, samples, strict=True)
     of_share = {share: sample_lines(each, groups, species) for share, each in pairs}
     found = estimate_frequency(groups, of_share)
-    content = {"groups": list(groups), "verdict": found.verdict}
+    content = {"groups": list(groups), "verdict": found.verdict, FACTORS: [START]}
     content |= {"slope": vars(found.slope), "crossing": vars(found.crossing)}
     intro = f"{groups[0]} against {groups[1]} from several shares, without mutation. {world_line(samples)}"
     worlds = [
-        {"share at the start": share, "seed": lines.seed, "share": float(lines.share[-1]), "selection": lines.selection}
+        {START: share, "seed": lines.seed, "share": float(lines.share[-1]), "selection": lines.selection}
         for share, each in of_share.items()
         for lines in each
     ]
@@ -58,7 +60,7 @@ def frequency_tables(found: Frequency) -> list[ResultTable]:
     )
     shares = [
         {
-            "share at the start": each.start,
+            START: each.start,
             "mean share": each.share,
             "s": each.selection.value,
             "low": each.selection.low,

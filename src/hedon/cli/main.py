@@ -13,7 +13,7 @@ from hedon.cli import assay, config, export, study, sweep
 from hedon.cli.analyze import analyze
 from hedon.cli.branch import branch
 from hedon.cli.check import check
-from hedon.cli.contrast import contrast
+from hedon.cli.compare import compare
 from hedon.cli.forecast import forecast
 from hedon.cli.output import OutputError, give_up, guard, pipe_closed
 from hedon.cli.power import power
@@ -40,10 +40,11 @@ GONE = {
     ("assay", "start"): "it is `hedon assay stability` now",
     ("diff",): "it is `hedon check RUN --against RUN` now",
     ("replay-fault",): "it is `hedon check RUN --fault` now",
+    ("contrast",): "it is `hedon compare` now",
     ("video",): "it is `hedon export video` now",
 }
 """Commands that there were once, with what replaces them."""
-GONE_OPTIONS = {("run", "--device"): "--backend"}
+GONE_OPTIONS = {("run", "--device"): "--backend", ("power", "--against"): "the second PILOT"}
 """Options of commands that have another name now."""
 
 
@@ -62,7 +63,7 @@ app.command()(branch)
 app.command()(view)
 app.command()(report)
 app.command()(analyze)
-app.command()(contrast)
+app.command()(compare)
 app.command()(power)
 app.command()(forecast)
 app.command()(check)

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
+from hedon.cli.compare import Between, Only, columns, read_sources
 from hedon.cli.console import make_console
-from hedon.cli.contrast import Only, columns
 from hedon.error import HedonError
 from hedon.text import brief
 
@@ -18,23 +18,19 @@ class PowerError(HedonError):
 def power(
     source: Annotated[
         str | None,
-        typer.Argument(
-            metavar="PILOT", help="Worlds to learn from: a sweep, the folder of an assay, or a table (.csv, .parquet)."
-        ),
+        typer.Argument(metavar="PILOT", help="Worlds to learn from: runs, a sweep, an assay, a study, or a table."),
+    ] = None,
+    other: Annotated[
+        str | None, typer.Argument(metavar="OTHER", help="A second condition, in pairs with the first by seed.")
     ] = None,
     effect: Annotated[
         str | None, typer.Option(metavar="SIZE,…", help="Effects to see, in units of the measure, as in -0.02,-0.01.")
     ] = None,
     only: Only = None,
     by: Annotated[
-        str | None, typer.Option(metavar="COLUMN", help="What tells two conditions of the pilot apart, for pairs.")
+        str | None, typer.Option(metavar="FACTOR", help="The factor that distinguishes two conditions, for pairs.")
     ] = None,
-    between: Annotated[
-        str | None, typer.Option(metavar="A,B", help="Which two values of --by, where it has more than two.")
-    ] = None,
-    against: Annotated[
-        str | None, typer.Option(metavar="PILOT", help="Another condition's worlds, in pairs by their seeds.")
-    ] = None,
+    between: Between = None,
     sd: Annotated[
         float | None, typer.Option(help="Instead of a pilot: the standard deviation between worlds, or of pairs.")
     ] = None,
@@ -44,33 +40,34 @@ def power(
 ) -> None:
     """Say how many worlds are needed to see an effect, from how much the worlds of a pilot differ.
 
-    Without --effect it says which effects some numbers of worlds would see. docs/guide/contrast.md explains it.
+    Without --effect it says which effects various numbers of worlds would show. docs/guide/compare.md explains it.
 
     \b
     Examples:
       hedon power sweeps/pilot --by preset --only w_action_mean --effect 0.1,0.2
-      hedon power assays/landscape-predator --against assays/landscape-prey-alone --effect -0.015
+      hedon power assays/landscape-predator assays/landscape-prey-alone --effect -0.015
       hedon power --sd 0.048 --effect -0.02
     """
     from hedon.cli.display.analysis import analysis_group
+    from hedon.compare.power import ALONE, APART, PilotSpread, power_answer, spreads
+    from hedon.compare.source import SOURCE
     from hedon.report.answer import write_answer
-    from hedon.sweep.power import ALONE, APART, PilotSpread, power_answer, read_pilot, spreads
 
     sizes = _numbers(effect)
     if between is not None and by is None:
-        raise PowerError("--between: names two values of a column: give it as --by COLUMN")
+        raise PowerError("--between: names two values of a factor: give it as --by FACTOR")
     if chance <= level:
         raise PowerError(f"--power {chance:g}: must be above --level = {level:g}")
     if (source is None) == (sd is None):
         raise PowerError("give either a PILOT, such as the folder of a sweep, or --sd")
     if source is None:
-        if not sd or sd < 0 or by or against or only:
-            raise PowerError("--sd: must be above 0, and needs no --by, --against or --only")
-        found = [PilotSpread("measure", design, sd, sd, sd, 0) for design in (ALONE, APART)]
+        if not sd or sd < 0 or by or only:
+            raise PowerError("--sd: must be above 0, and needs no --by or --only")
+        found, name = [PilotSpread("measure", design, sd, sd, sd, 0) for design in (ALONE, APART)], ""
     else:
-        other = None if against is None else read_pilot(against, columns(only))
-        found = spreads(read_pilot(source, columns(only)), by, other, between)
-    answer = power_answer(found, sizes, chance, level, source or "")
+        pilot = read_sources(source, other)
+        found, name = spreads(pilot, by or (SOURCE if other else None), between, columns(only)), pilot.name
+    answer = power_answer(found, sizes, chance, level, name)
     console = make_console()
     console.print(analysis_group({table.name: table for table in answer.tables}))
     if out is not None:

@@ -158,8 +158,8 @@ def report(
       hedon sweep report sweeps/cost
       hedon sweep report sweeps/cost --only alive_mean,w_action_mean
     """
+    from hedon.compare.report import write_report
     from hedon.sweep.collect import collect as write_table
-    from hedon.sweep.report import write_report
 
     made, store = _opened(place)
     names = [name.strip() for name in only.split(",")] if only else []
@@ -243,10 +243,10 @@ def _run_and_report(
 ) -> None:
     """Runs what is open, also what is added meanwhile, shows it, and prints the table. JobError: a batch failed."""
     from hedon.cli.display.analysis import analysis_group
+    from hedon.compare.report import settings_table
     from hedon.jobs.part import parse_part
     from hedon.sweep.collect import collect as write_table
     from hedon.sweep.plan import load_plan
-    from hedon.sweep.report import settings_table
     from hedon.sweep.run import open_tasks
 
     console, share, again = make_console(), parse_part(part), f"Go on with: hedon sweep resume {_quoted(store)}"

@@ -3,8 +3,9 @@
 A measure added here appears in all of them. Measures of genes are made for each gene.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import polars as pl
 
@@ -212,3 +213,22 @@ def column_measure(column: str) -> Measure | None:
     if found is None or not species:
         return found
     return replace(found, name=column, title=f"{found.title}: {species}")
+
+
+def world_row(records: Sequence[WorldRecord]) -> dict[str, Any]:
+    """Every measure of one world: a row of a table of worlds.
+
+    Args:
+        records: The records of the world, one per species.
+
+    Returns:
+        The seed, whether the world is extinct, and each measure under its name. If there are several species, names of
+        measures begin with the species, as in "prey.alive_mean", and an extinct world is one without any species.
+    """
+    row: dict[str, Any] = {"seed": records[0].seed, "extinct": all(each.extinct_step is not None for each in records)}
+    for record in records:
+        before = f"{record.species}." if len(records) > 1 else ""
+        measures = [each for each in MEASURES.values() if each.applies(record)]
+        measures += map(gene_mean, record.weight_names)
+        row |= {f"{before}{measure.name}": measure.of(record) for measure in measures}
+    return row

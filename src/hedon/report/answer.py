@@ -16,6 +16,9 @@ from hedon.report.markdown import pipe_table
 from hedon.report.summary import plain
 from hedon.report.table import cells
 
+WORLDS, FACTORS = "world", "factors"
+"""In the JSON of an assay or a study: its table with a row per world, and the columns that distinguish conditions."""
+
 
 @dataclass(frozen=True, eq=False)
 class Answer:

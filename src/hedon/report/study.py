@@ -12,9 +12,11 @@ from hedon.analysis.topic.world import regime
 from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import save_figure, svg_bytes
+from hedon.measure.catalogue import world_row
 from hedon.record.atomic import write_atomically
 from hedon.record.folder import FIGURES
 from hedon.record.lock import one_writer
+from hedon.report.answer import FACTORS, WORLDS
 from hedon.report.page import FigureFile
 from hedon.report.study_page import HTML, BuiltItem, study_pages
 from hedon.report.summary import plain
@@ -27,6 +29,8 @@ from hedon.text import count
 TABLES = "tables"
 """Folder of the tables beside the page."""
 JSON = "study.json"
+CONDITION = "condition"
+"""The column of a condition's label in the table of worlds."""
 
 
 def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) -> tuple[Path, list[BuiltItem]]:
@@ -50,11 +54,12 @@ def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) ->
 def _write(studies: Sequence[Study], gathered: Gathered, folder: Path) -> list[BuiltItem]:
     for name in (FIGURES, TABLES):
         (folder / name).mkdir(exist_ok=True)
-    made = [_make(item, gathered, folder) for study in studies for item in study.items]
+    inputs = {item.name: gathered.inputs(item) for study in studies for item in study.items}
+    made = [_make(item, inputs[item.name], gathered, folder) for study in studies for item in study.items]
     claims = [claim for study in studies for claim in study.claims]
     conditions = by_condition(gathered.demanded())
     overall = [found for found in (*verdict(conditions, claims), *regime(conditions)) if not found.rows.is_empty()]
-    everything = [*overall, *(found for one in made for found in one.tables)]
+    everything = [*overall, *(found for one in made for found in one.tables), _every_world(made, inputs)]
     for found in everything:
         buffer = io.BytesIO()
         found.rows.write_csv(buffer)
@@ -70,8 +75,7 @@ def _write_file(path: Path, content: bytes) -> None:
     write_atomically(path, lambda file: file.write(content))
 
 
-def _make(item: Item, gathered: Gathered, folder: Path) -> BuiltItem:
-    inputs = gathered.inputs(item)
+def _make(item: Item, inputs: ItemInputs, gathered: Gathered, folder: Path) -> BuiltItem:
     parts: list[FigureFile | ResultTable] = []
     for part in item.make(inputs):
         if isinstance(part, NamedFigure):
@@ -106,6 +110,29 @@ def _worlds_row(label: str, worlds: Sequence[WorldRecord], asked: int) -> Mappin
     }
 
 
+def _every_world(made: Sequence[BuiltItem], inputs: Mapping[str, ItemInputs]) -> ResultTable:
+    """Every world of every condition once, for `hedon compare` and `hedon power`.
+
+    A label that means one thing in one item and another thing in another item is preceded by the item's name.
+    """
+    found: dict[str, list[WorldRecord]] = {}
+    for one in made:
+        for label, worlds in inputs[one.item.name].worlds.items():
+            same = _alike(found.get(label, worlds), worlds)
+            found[label if same else f"{one.item.name}: {label}"] = list(worlds)
+    rows = [
+        {CONDITION: label, "steps": world.end_step, **world_row([world])}
+        for label, worlds in found.items()
+        for world in worlds
+    ]
+    return make_table(WORLDS, "Each world by itself", rows, shown=False)
+
+
+def _alike(worlds: Sequence[WorldRecord], others: Sequence[WorldRecord]) -> bool:
+    """Whether two items mean the same worlds, cut at the same step."""
+    return [(w.condition, w.seed, w.end_step) for w in worlds] == [(w.condition, w.seed, w.end_step) for w in others]
+
+
 def _json(gathered: Gathered, made: Sequence[BuiltItem], tables: Sequence[ResultTable]) -> dict[str, Any]:
     request = gathered.request
     return plain(
@@ -125,6 +152,7 @@ def _json(gathered: Gathered, made: Sequence[BuiltItem], tables: Sequence[Result
             ],
             "runs": [{"folder": run.path.name, "manifest": asdict(run.manifest)} for run in gathered.runs],
             "unreadable": list(gathered.faults),
+            FACTORS: [CONDITION],
             "tables": {
                 found.name: {"title": found.title, "note": found.note, "rows": found.rows.to_dicts()}
                 for found in tables

@@ -8,6 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 from synthetic_run import write_run
 
+from hedon.compare.figure import draw_curves
 from hedon.config import load_config
 from hedon.figure.demography import draw_demography
 from hedon.figure.law import draw_birth
@@ -16,7 +17,6 @@ from hedon.figure.population import draw_population
 from hedon.figure.survival import draw_survival
 from hedon.record.reader import open_run
 from hedon.report.analysis import Analysis, analyze
-from hedon.sweep.figure import draw_curves
 
 BASELINE = load_config("baseline")
 

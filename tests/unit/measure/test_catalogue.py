@@ -11,13 +11,13 @@ from synthetic_run import write_run
 
 from hedon.analysis import WorldRecord, read_worlds
 from hedon.cli.display.summary import summary_table
+from hedon.compare.response import points, responses
 from hedon.measure.catalogue import MEASURES, column_measure, gene_mean
 from hedon.measure.measure import Measure
 from hedon.measure.response import at_common_age, measured
 from hedon.record.reader import open_run
 from hedon.report.summary import summarize
 from hedon.statistic.interval import AMOUNT
-from hedon.sweep.response import points, responses
 from hedon.sweep.row import world_rows
 
 

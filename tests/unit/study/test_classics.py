@@ -8,6 +8,7 @@ import pytest
 from command import hedon
 
 from hedon.assay import Lines
+from hedon.compare.source import read_table
 from hedon.statistic import FOR_VERDICT as WORLDS
 from hedon_studies.lifespan_and_plasticity.study import CHANGING, CONSTANT, named_tests
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
@@ -136,6 +137,8 @@ def run_quick(folder: Path, name: str) -> dict[str, list[dict]]:
     tables = {key: table["rows"] for key, table in found["tables"].items()}
     answers = {row["answer"] for key, table in tables.items() if key.endswith("_verdict") for row in table}
     assert answers == {OPEN}
+    assert len(tables["world"]) == sum(len(item["worlds"]) for item in found["items"]), "one seed of each condition"
+    assert read_table(str(folder / "studies" / name)).factors == ("condition",)
     assert (folder / "studies" / name / "figures" / f"{name}.png").stat().st_size > 10_000
     return tables
 

@@ -79,4 +79,5 @@ def known_values(table: pl.DataFrame, name: str, factors: Sequence[str]) -> pl.D
         Columns "seed", those of the factors, and "value".
     """
     rows = table.select("seed", *factors, value=pl.col(name).cast(pl.Float64)).fill_nan(None).drop_nulls("value")
-    return rows.group_by("seed", *factors).agg(pl.col("value").mean())
+    # In the order of the table, so that sums over worlds are the same each time.
+    return rows.group_by("seed", *factors, maintain_order=True).agg(pl.col("value").mean())

@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
+from hedon.compare.response import Point, binned, points
 from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, styled
 from hedon.statistic.interval import Interval
 from hedon.statistic.minimum import FOR_INTERVAL
-from hedon.sweep.response import Point, binned, points
 
 WIDE = 30.0
 """Ratio of the largest value of a factor to the smallest from which its axis is logarithmic."""

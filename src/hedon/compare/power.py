@@ -1,28 +1,23 @@
 """How many worlds are needed to see an effect, from how much the worlds of a pilot differ."""
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import polars as pl
 from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
-from hedon.config.problem import nearest
+from hedon.compare.contrast import choose_factor, choose_levels
+from hedon.compare.error import CompareError
+from hedon.compare.match import known_values
+from hedon.compare.response import responses
+from hedon.compare.source import WorldTable
 from hedon.figure.style import BLUE, GREEN, MUTED, ORANGE, VERMILION, head, new_figure, styled
-from hedon.jobs.store import Store
 from hedon.report.answer import Answer
 from hedon.statistic.interval import distance_interval
 from hedon.statistic.power import Design, contrast_power, effect_seen, worlds_needed
-from hedon.sweep.collect import collect
-from hedon.sweep.contrast import two_of
-from hedon.sweep.error import SweepError
-from hedon.sweep.match import known_values
-from hedon.sweep.plan import PLAN, load_plan
-from hedon.sweep.response import responses
 
 PAIRS, APART, ALONE = "pairs", "two conditions", "one condition"
 _TESTED: dict[str, Design] = {PAIRS: "pairs", APART: "independent", ALONE: "alone"}
@@ -34,21 +29,6 @@ DESIGNS = {
 COUNTS = (5, 10, 20, 50, 100, 200)
 """Worlds for which the least effect is told where none is given."""
 _COLORS = (BLUE, VERMILION, GREEN, ORANGE)
-
-
-@dataclass(frozen=True, eq=False)
-class Pilot:
-    """Worlds of which is known how much they differ.
-
-    Attributes:
-        table: a row per world, with its seed.
-        groups: columns that tell conditions apart.
-        shown: columns of measures, and what they are called.
-    """
-
-    table: pl.DataFrame
-    groups: tuple[str, ...]
-    shown: dict[str, str]
 
 
 @dataclass(frozen=True)
@@ -71,81 +51,32 @@ class PilotSpread:
     worlds: int
 
 
-def read_pilot(source: str, only: Sequence[str] = ()) -> Pilot:
-    """Reads the worlds of a sweep, of an assay, or of a table with a row per world.
-
-    Args:
-        source: place of a sweep; folder of an assay; or a file, .csv or .parquet.
-        only: columns of measures; by default all, of a sweep the usual ones.
-
-    Raises:
-        SweepError: it is none of these, or has no such column.
-    """
-    path = Path(source)
-    if path.suffix in (".csv", ".parquet") and path.is_file():
-        table, groups = pl.read_csv(path) if path.suffix == ".csv" else pl.read_parquet(path), ()
-    elif (store := Store(source)).read(PLAN) is not None:
-        plan = load_plan(store)
-        table = collect(plan, store)
-        if not table.is_empty():
-            return Pilot(table, plan.factors, responses(table, only, plan.factors))
-        groups = plan.factors
-    else:
-        table, groups = _assay_worlds(path), ()
-    if "seed" not in table.columns or table.is_empty():
-        raise SweepError(f"{source}: has no worlds yet: there must be a column seed, and a row for each world")
-    fit = [name for name, kind in table.schema.items() if kind.is_numeric() and name != "seed"]
-    for name in only:
-        if name not in fit:
-            near = nearest(name, fit)
-            hint = f"; did you mean {near}?" if near else f" (there are {', '.join(fit)})"
-            raise SweepError(f"--only: {name!r} is not a column of numbers of {source}{hint}")
-    return Pilot(table, groups, {name: name for name in only or fit})
-
-
-def _assay_worlds(folder: Path) -> pl.DataFrame:
-    """The worlds of an assay, from its summary."""
-    for path in sorted(folder.glob("*.json")):
-        try:
-            content = json.loads(path.read_text(encoding="utf-8"))
-            rows = content["tables"]["world"]["rows"]
-        except (OSError, ValueError, KeyError, TypeError):
-            continue
-        return pl.DataFrame(rows, infer_schema_length=None)
-    raise SweepError(f"{folder}: holds neither a sweep nor a finished assay, and is no table (.csv, .parquet)")
-
-
 def spreads(
-    pilot: Pilot, by: str | None = None, other: Pilot | None = None, between: str | None = None
+    pilot: WorldTable, by: str | None = None, between: str | None = None, only: Sequence[str] = ()
 ) -> list[PilotSpread]:
     """How much the worlds of a pilot differ.
 
     Args:
-        pilot: its worlds.
-        by: column with two values, whose worlds of equal seed are pairs.
-        other: another condition's worlds, which are in pairs with those of equal seeds.
-        between: the two values of the column, with a comma between them; None where it has two.
+        pilot: Its worlds.
+        by: A factor with two values; worlds of equal seeds form pairs. None: no pairs.
+        between: Two values of the factor, separated by a comma; None if it has two.
+        only: Columns of measures; by default the usual ones.
 
     Raises:
-        SweepError: there are too few worlds, or the column has not two values.
+        CompareError: There are too few worlds, or the factor does not have two values.
     """
-    if by is not None and by not in pilot.table.columns:
-        near = nearest(by, pilot.table.columns)
-        raise SweepError(f"--by {by}: is not a column of the worlds{f'; did you mean {near}?' if near else ''}")
-    named: list[str] = [*pilot.groups, *([by] if by is not None and by not in pilot.groups else [])]
-    groups = [name for name in named if name in pilot.table.columns]
-    for table in (pilot.table, *([other.table] if other is not None else [])):
-        _require_one_each(table, [name for name in groups if name in table.columns])
+    by = None if by is None else choose_factor(pilot, by)
+    factors = [*pilot.factors, *([by] if by and by not in pilot.factors else [])]
+    _require_one_each(pilot.rows, factors)
     found = []
-    for name, title in pilot.shown.items():
-        if (pairs := _pairs(pilot, name, groups, by, other, between)) is not None:
-            found += _spread(title, PAIRS, pairs)
-        tables = pilot.table.partition_by(groups) if groups else [pilot.table]
-        tables += [] if other is None or name not in other.table.columns else [other.table]
-        known = [known_values(rows, name, ()) for rows in tables]
+    for name, title in responses(pilot.rows, only, factors).items():
+        if by is not None:
+            found += _spread(title, PAIRS, _changes(pilot, name, by, between))
+        groups = pilot.rows.partition_by(factors) if factors else [pilot.rows]
+        known = [known_values(rows, name, ()) for rows in groups]
         found += _spread(title, APART, known) + _spread(title, ALONE, known)
     if not found:
-        raise SweepError("worlds differ in no measure, or there are fewer than two of a condition: nothing can be told")
+        raise CompareError("the worlds do not differ in any measure, or there are fewer than two in each condition")
     return found
 
 
@@ -155,25 +86,17 @@ def _require_one_each(table: pl.DataFrame, groups: Sequence[str]) -> None:
     if repeated.height:
         row = repeated.sort("seed").row(0, named=True)
         of = "".join(f", {name} = {row[name]}" for name in groups)
-        raise SweepError(
+        raise CompareError(
             f"{row['len']} worlds have seed {row['seed']}{of}: keep one row per seed and condition, or give the "
             "folder of the sweep, which knows its factors"
         )
 
 
-def _pairs(
-    pilot: Pilot, name: str, groups: Sequence[str], by: str | None, other: Pilot | None, between: str | None
-) -> list[pl.DataFrame] | None:
-    """Differences of worlds of equal seeds, a table per setting of the other factors; None if nothing is paired."""
-    if by is not None:
-        held = [each for each in groups if each != by]
-        levels = two_of(by, pilot.table[by].unique(maintain_order=True), between)
-        sides = [pilot.table.filter(pl.col(by) == value) for value in levels]
-    elif other is not None and name in other.table.columns:
-        held, sides = [], [pilot.table, other.table]
-    else:
-        return None
-    one, two = (known_values(side, name, held) for side in sides)
+def _changes(pilot: WorldTable, name: str, by: str, between: str | None) -> list[pl.DataFrame]:
+    """The differences between worlds of equal seeds, one table per setting of the other factors."""
+    held = [each for each in pilot.factors if each != by]
+    levels = choose_levels(by, pilot.rows[by].unique(maintain_order=True), between)
+    one, two = (known_values(pilot.rows.filter(pl.col(by) == value), name, held) for value in levels)
     pairs = one.join(two, on=["seed", *held], suffix="_other")
     changes = pairs.select("seed", *held, value=pl.col("value_other") - pl.col("value"))
     return changes.partition_by(held) if held else [changes]
@@ -215,7 +138,7 @@ def power_answer(
     content = {"pilot": pilot, "power": power, "level": level, "effects": list(effects)}
     content["spreads"] = [vars(each) for each in found]
     intro = f"From {pilot}. " if pilot else ""
-    intro += f"The tests of `hedon contrast`, at {level:g}, find an effect with chance {power:g}."
+    intro += f"The tests of `hedon compare`, at {level:g}, find an effect with chance {power:g}."
     figure = draw_power(found, effects, power, level)
     return Answer("power", "How many worlds are needed", content, tables, intro, figure)
 

@@ -1,4 +1,4 @@
-"""Two conditions of a sweep are compared by worlds, and a pilot says how many worlds are needed."""
+"""Two conditions are compared by worlds, whatever holds them, and a pilot says how many worlds are needed."""
 
 import json
 import math
@@ -10,17 +10,21 @@ import pytest
 from scipy import stats
 from sweep_case import planned, sweep_file
 from typer.testing import CliRunner
+from worlds import QUICK
 
+from hedon.analysis.world.record import read_worlds
 from hedon.cli.main import app
+from hedon.compare.contrast import compare
+from hedon.compare.error import CompareError
+from hedon.compare.report import settings_table
 from hedon.jobs.store import Store
+from hedon.measure.catalogue import MEASURES
+from hedon.record.reader import open_run
 from hedon.report.table import cells
 from hedon.statistic.contrast import independent_contrast, paired_contrast
 from hedon.statistic.power import SIMULATED, contrast_power, worlds_needed
 from hedon.sweep.collect import collect
-from hedon.sweep.contrast import compare
-from hedon.sweep.error import SweepError
 from hedon.sweep.plan import load_plan
-from hedon.sweep.report import settings_table
 
 SEEDS = 12
 EFFECT = 4.0
@@ -56,8 +60,8 @@ def call(*words: str) -> str:
 
 
 def rows(place: str, *words: str) -> dict[str, dict]:
-    call("contrast", place, "--by", "energy.basic_cost", *words)
-    content = json.loads((Path(place) / "contrast" / "contrast.json").read_text())
+    call("compare", place, "--by", "energy.basic_cost", *words)
+    content = json.loads((Path(place) / "compare" / "compare.json").read_text())
     return {row["measure"]: row for row in content["tables"]["contrast"]["rows"]}
 
 
@@ -82,15 +86,15 @@ def test_pairs_of_seeds_show_what_independent_worlds_hide(tmp_path):
 
 def test_what_the_extinct_do_not_have_is_left_out_and_they_are_counted(tmp_path):
     place = fill(tmp_path)
-    said = call("contrast", place, "--by", "energy.basic_cost")
-    content = json.loads((Path(place) / "contrast" / "contrast.json").read_text())
+    said = call("compare", place, "--by", "energy.basic_cost")
+    content = json.loads((Path(place) / "compare" / "compare.json").read_text())
     assert [row["died out"] for row in content["tables"]["extinct"]["rows"]] == [0, 2]
     measures = {row["measure"]: row for row in content["tables"]["contrast"]["rows"]}
     assert measures["mean of w_action"]["worlds"] == SEEDS - 1
     assert measures["share of worlds extinct"]["difference"] == pytest.approx(1 / SEEDS)
     assert "Worlds that died out" in said
-    assert (Path(place) / "contrast" / "contrast.png").stat().st_size > 5000
-    assert "| agents alive" in (Path(place) / "contrast" / "contrast.md").read_text()
+    assert (Path(place) / "compare" / "compare.png").stat().st_size > 5000
+    assert "| agents alive" in (Path(place) / "compare" / "compare.md").read_text()
 
 
 def test_pairs_are_of_one_seed_and_one_setting_of_all_other_factors():
@@ -129,7 +133,7 @@ def test_factors_that_are_not_crossed_are_told(tmp_path):
     )
     place = fill(tmp_path, rest=zipped)
     assert "The conditions differ in energy.initial too" in " ".join(
-        call("contrast", place, "--by", "energy.basic_cost").split()
+        call("compare", place, "--by", "energy.basic_cost").split()
     )
 
 
@@ -138,7 +142,7 @@ def test_factors_that_are_not_crossed_are_told(tmp_path):
     [
         (("--by", "energy.basic"), "did you mean energy.basic_cost?"),
         (("--by", "energy.basic_cost", "--between", "0.001,0.5"), "there are 0.001, 0.01, 0.02"),
-        (("--by", "energy.basic_cost"), "name two of the values of energy.basic_cost with --between A,B"),
+        (("--by", "energy.basic_cost"), "name two values of energy.basic_cost with --between A,B"),
         (("--by", "energy.basic_cost", "--between", "0.001,0.01", "--only", "alive_maen"), "did you mean alive_mean?"),
         (("--by", "energy.basic_cost", "--between", "0.001,0.02"), "no world with energy.basic_cost = 0.02"),
     ],
@@ -147,8 +151,8 @@ def test_what_cannot_be_compared_is_refused(tmp_path, words, message):
     place = fill(tmp_path)
     planned(sweep_file(tmp_path, seeds=SEEDS, rest='[factor]\n"energy.basic_cost" = [0.001, 0.01, 0.02]\n'
             '"energy.initial" = [8.0, 9.0]\n'), place)  # fmt: skip
-    done = CliRunner().invoke(app, ["contrast", place, *words])
-    assert isinstance(done.exception, SweepError)
+    done = CliRunner().invoke(app, ["compare", place, *words])
+    assert isinstance(done.exception, CompareError)
     assert message in str(done.exception)
 
 
@@ -161,7 +165,7 @@ def test_pairs_for_the_slope_of_fear(effect, needed):
 @pytest.mark.parametrize("design", ["pairs", "independent"])
 @pytest.mark.parametrize("effect", [0.6, 2.5])
 def test_as_many_worlds_as_needed_find_an_effect_as_often_as_asked(design, effect):
-    """By drawing worlds and comparing them as `hedon contrast` does: with 4 or 5 pairs it finds nothing."""
+    """By drawing worlds and comparing them as `hedon compare` does: with 4 or 5 pairs it finds nothing."""
     worlds, rng = worlds_needed(effect, design), np.random.default_rng(2)
     assert worlds is not None
     assert design == "independent" or worlds >= 6
@@ -218,7 +222,7 @@ def test_worlds_of_a_table_and_of_two_assays_are_pilots(tmp_path):
     (tmp_path / "assay").mkdir()
     other = worlds.with_columns(slope=pl.col("slope") + pl.col("seed") / 100)
     (tmp_path / "assay" / "landscape.json").write_text(json.dumps({"tables": {"world": {"rows": other.to_dicts()}}}))
-    found = power_rows(tmp_path, str(tmp_path / "a.csv"), "--against", str(tmp_path / "assay"), "--effect", "0.05")
+    found = power_rows(tmp_path, str(tmp_path / "a.csv"), str(tmp_path / "assay"), "--effect", "0.05")
     sd = {row["design"]: row["sd"] for row in found}
     assert sd["pairs"] == pytest.approx(np.std(np.arange(1, 11) / 100, ddof=1))
     assert sd["two conditions"] == pytest.approx(
@@ -233,19 +237,20 @@ def test_worlds_of_a_table_and_of_two_assays_are_pilots(tmp_path):
         (("--sd", "1", "--effect", "x"), "--effect x: must be numbers other than 0"),
         (("--sd", "0"), "must be above 0"),
         (("--sd", "1", "--power", "0.2", "--level", "0.3"), "must be above --level = 0.3"),
-        (("nowhere",), "holds neither a sweep nor a finished assay"),
+        (("nowhere",), "nowhere: holds no worlds to compare: give runs, a sweep, an assay, a study, or a table"),
         (("a.csv", "--only", "slpe"), "did you mean slope?"),
-        (("a.csv", "--by", "sed"), "did you mean seed?"),
-        (("a.csv", "--by", "seed"), "name two of the values of seed with --between A,B: there are 1, 2, 3"),
-        (("a.csv", "--by", "seed", "--between", "1,4"), "--between 1,4: name two of the values of seed"),
-        (("a.csv", "--between", "1,2"), "give it as --by COLUMN"),
-        (("same.csv",), "worlds differ in no measure"),
+        (("a.csv", "--by", "slpe"), "did you mean slope?"),
+        (("a.csv", "--by", "arm"), "name two values of arm with --between A,B: there are 1, 2, 3"),
+        (("a.csv", "--by", "arm", "--between", "1,4"), "--between 1,4: name two values of arm"),
+        (("a.csv", "--by", "seed"), "--by seed: is not a factor of a.csv (there are slope, arm)"),
+        (("a.csv", "--between", "1,2"), "give it as --by FACTOR"),
+        (("same.csv",), "the worlds do not differ in any measure"),
         (("twice.csv",), "2 worlds have seed 2: keep one row per seed and condition"),
     ],
 )
 def test_what_says_nothing_of_worlds_is_refused(tmp_path, monkeypatch, words, message):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.csv").write_text("seed,slope\n1,0.5\n2,0.7\n3,0.1\n")
+    (tmp_path / "a.csv").write_text("seed,slope,arm\n1,0.5,1\n2,0.7,2\n3,0.1,3\n")
     (tmp_path / "twice.csv").write_text("seed,slope\n1,0.5\n2,0.5\n2,0.7\n")
     (tmp_path / "same.csv").write_text("seed,slope\n1,0.5\n2,0.5\n")
     done = CliRunner().invoke(app, ["power", *words])
@@ -260,3 +265,87 @@ def test_tables_show_intervals_from_five_worlds_on_and_names_of_settings(tmp_pat
     headers, shown = cells(table)
     assert headers[:2] == ["energy.basic_cost", "energy.initial"]
     assert ("…" in " ".join(shown[0])) == (seeds == 5)
+
+
+def compared(folder: Path, *words: str) -> dict[str, dict]:
+    call("compare", *words, "--out", str(folder / "answer"))
+    content = json.loads((folder / "answer" / "compare.json").read_text())
+    return {row["measure"]: row for row in content["tables"]["contrast"]["rows"]}
+
+
+@pytest.fixture(scope="module")
+def two_runs(tmp_path_factory) -> Path:
+    """A run of each cost, the second half as long again, with two seeds in common."""
+    folder = tmp_path_factory.mktemp("runs")
+    for name, cost, seeds, steps in (("cheap", 0.001, "1-3", 1024), ("dear", 0.004, "2-4", 1536)):
+        words = ["baseline", *QUICK_WORDS, "--set", f"energy.basic_cost={cost}"]
+        call("run", *words, "--seeds", seeds, "--steps", str(steps), "--out", str(folder / name))
+    return folder
+
+
+QUICK_WORDS = [word for each in QUICK for word in ("--set", each)]
+
+
+def test_two_runs_are_compared_at_their_common_length(two_runs, tmp_path):
+    found = compared(tmp_path, str(two_runs / "cheap"), str(two_runs / "dear"))
+    cheap, dear = (read_worlds([open_run(two_runs / name)]) for name in ("cheap", "dear"))
+    row, measure = found["agents alive, last tenth"], MEASURES["alive_mean"].of
+    assert (row["worlds"], row["paired"], row["left out"]) == (2, "yes", 2)
+    pairs = [(measure(a), measure(b.until(1024))) for a in cheap for b in dear if a.seed == b.seed]
+    assert row["difference"] == pytest.approx(np.mean([b - a for a, b in pairs]))
+    assert measure(dear[0]) != measure(dear[0].until(1024))
+
+
+def test_a_folder_of_runs_is_compared_by_their_conditions(two_runs, tmp_path):
+    labels = [f"baseline (corrected): energy.basic_cost {cost}" for cost in (0.001, 0.004)]
+    within = compared(tmp_path, str(two_runs), "--between", ",".join(labels))
+    apart = compared(tmp_path, str(two_runs / "cheap"), str(two_runs / "dear"))
+    assert {name: row["difference"] for name, row in within.items()} == {
+        name: row["difference"] for name, row in apart.items()
+    }
+    message = "holds runs of several configs"
+    assert message in str(CliRunner().invoke(app, ["compare", str(two_runs), str(two_runs / "cheap")]).exception)
+
+
+def test_conditions_of_a_study_are_compared_and_serve_as_a_pilot(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    rows = [
+        {"condition": label, "seed": seed, "extinct": False, "alive_mean": 10.0 * seed + lift + seed % 2}
+        for label, lift in (("prey", 0.0), ("prey, many", 5.0))
+        for seed in range(1, 7)
+    ]
+    Path("fear").mkdir()
+    Path("fear/study.json").write_text(json.dumps({"tables": {"world": {"rows": rows}}, "factors": ["condition"]}))
+    found = compared(tmp_path, "fear")
+    assert found["agents alive, last tenth"]["difference"] == pytest.approx(5.0)
+    row, *_ = power_rows(tmp_path, "fear", "--effect", "5", "--only", "alive_mean")
+    assert row["sd"] == pytest.approx(np.std([10.0 * seed + seed % 2 for seed in range(1, 7)], ddof=1))
+
+
+def test_frequencies_of_one_seed_are_worlds_of_several_shares(tmp_path):
+    rows = [{"share at the start": share, "seed": seed, "selection": share + seed / 10}
+            for share in (0.1, 0.9) for seed in range(1, 7)]  # fmt: skip
+    (tmp_path / "rare").mkdir()
+    content = {"tables": {"world": {"rows": rows}}, "factors": ["share at the start"]}
+    (tmp_path / "rare" / "frequency.json").write_text(json.dumps(content))
+    assert compared(tmp_path, str(tmp_path / "rare"))["selection"]["difference"] == pytest.approx(0.8)
+    (row,) = (
+        r for r in power_rows(tmp_path, str(tmp_path / "rare"), "--effect", "1") if r["design"] == "one condition"
+    )
+    assert row["sd"] == pytest.approx(np.std(np.arange(6) / 10, ddof=1))
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("a.csv", "a.csv"), "a.csv is named twice"),
+        (("a.csv", "b.csv"), "have no measure in common"),
+        (("a.csv",), "a.csv holds worlds of one condition: name a second source"),
+        (("a.csv", "nowhere"), "nowhere: holds no worlds to compare"),
+    ],
+)
+def test_sources_that_cannot_be_compared_are_refused(tmp_path, monkeypatch, words, message):
+    monkeypatch.chdir(tmp_path)
+    Path("a.csv").write_text("seed,slope\n1,0.5\n2,0.7\n")
+    Path("b.csv").write_text("seed,slant\n1,0.5\n2,0.7\n")
+    assert message in str(CliRunner().invoke(app, ["compare", *words]).exception)

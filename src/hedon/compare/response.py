@@ -1,4 +1,4 @@
-"""What a report of a sweep shows of each world, and its means over the worlds of equal settings."""
+"""The measures that a comparison shows, and their means over worlds of equal settings."""
 
 import math
 from collections.abc import Sequence
@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import polars as pl
 
+from hedon.compare.error import CompareError
 from hedon.config.problem import nearest
 from hedon.measure.catalogue import column_measure
 from hedon.statistic.interval import ANY, Interval, mean_interval, share_interval
-from hedon.sweep.error import SweepError
 from hedon.sweep.row import KEYS
 
 BINS = 8
@@ -31,15 +31,15 @@ class Point:
 
 
 def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str]) -> dict[str, str]:
-    """Columns to show and what they are called: those asked for, or the usual ones and the mean of each weight.
+    """The columns to show, with their titles.
 
     Args:
         table: A row per world.
-        asked: Columns that the user names; none for the usual ones.
-        factors: Columns of what was varied.
+        asked: Columns that the user names; by default the usual measures, or all columns of numbers if there are none.
+        factors: Columns that distinguish conditions.
 
     Raises:
-        SweepError: one is not a column of numbers.
+        CompareError: One is not a column of numbers.
     """
     fit = [name for name, kind in table.schema.items() if kind.is_numeric() or kind == pl.Boolean]
     fit = [name for name in fit if name not in (*KEYS, *factors)]
@@ -47,9 +47,9 @@ def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str])
         if name not in fit:
             near = nearest(name, fit)
             hint = f"; did you mean {near}?" if near else f" (there are {', '.join(fit)})"
-            raise SweepError(f"--only: {name!r} is not a column of numbers of the table{hint}")
+            raise CompareError(f"--only: {name!r} is not a column of numbers of the table{hint}")
     known = {name: found for name in fit if (found := column_measure(name))}
-    shown = asked or [name for name, found in known.items() if found.usual]
+    shown = asked or [name for name, found in known.items() if found.usual] or fit
     return {name: known[name].title if name in known else name for name in shown}
 
 

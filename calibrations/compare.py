@@ -1,4 +1,4 @@
-"""Comparisons of two conditions of a sweep: false alarms, intervals, and power at the number of worlds promised."""
+"""Comparisons of two conditions: false alarms, intervals, and power at the number of worlds promised."""
 
 from collections.abc import Callable
 
@@ -6,10 +6,11 @@ import numpy as np
 import polars as pl
 
 from calibrations.calibration import Calibration
+from hedon.compare.contrast import compare
+from hedon.compare.power import PAIRS, spreads
+from hedon.compare.source import WorldTable
 from hedon.statistic.contrast import Contrast
 from hedon.statistic.power import Design, worlds_needed
-from hedon.sweep.contrast import compare
-from hedon.sweep.power import PAIRS, Pilot, spreads
 
 LEVEL = 0.05
 
@@ -57,7 +58,7 @@ def _unequal(few: tuple[int, int], kind: str) -> Callable[[np.random.Generator],
 
 
 def _found(design: Design) -> Callable[[np.random.Generator], bool]:
-    """Whether `contrast` finds an effect with as many worlds as `power` says that it takes."""
+    """Whether `compare` finds an effect with as many worlds as `power` says that it takes."""
 
     def draw(rng: np.random.Generator) -> bool:
         effect = float(np.exp(rng.uniform(np.log(0.6), np.log(3.5))))
@@ -78,14 +79,14 @@ def _found(design: Design) -> Callable[[np.random.Generator], bool]:
 
 def _spread(rng: np.random.Generator) -> float:
     """The error of the spread of pairs that a pilot of several settings gives, as a share of the truth."""
-    pilot = Pilot(_worlds(rng, int(rng.integers(6, 13)), settings=4), ("level", "other"), {"y": "y"})
+    pilot = WorldTable("pilot", _worlds(rng, int(rng.integers(6, 13)), settings=4), ("level", "other"))
     (found,) = (each for each in spreads(pilot, "level") if each.design == PAIRS)
     return found.sd / np.sqrt(2) - 1.0
 
 
 _DONE = "6 to 12 seeds x 2 settings x 2 levels, of which 40 to 100 % are done; seeds and settings differ by much"
 _SMALL = "independent worlds, {} against 10 to 20; those of the smaller group vary three times as much"
-COVERS = ("tool:contrast",)
+COVERS = ("tool:compare",)
 
 CALIBRATIONS = [
     Calibration("contrast, p of pairs", COVERS, _DONE, "false alarms", LEVEL, _partial(True, "p")),

@@ -1,4 +1,4 @@
-"""The report of a sweep: figures, and one page of text with a table of every response."""
+"""The report of a sweep: curves and maps of its measures, and one page with a table of them."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -10,6 +10,9 @@ import polars as pl
 from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
+from hedon.compare.error import CompareError
+from hedon.compare.figure import draw_curves, draw_map
+from hedon.compare.response import points, responses
 from hedon.figure.style import save_figure
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
@@ -17,10 +20,7 @@ from hedon.report.markdown import pipe_table
 from hedon.report.table import cells
 from hedon.statistic.interval import Interval
 from hedon.statistic.minimum import FOR_INTERVAL
-from hedon.sweep.error import SweepError
-from hedon.sweep.figure import draw_curves, draw_map
 from hedon.sweep.plan import SweepPlan
-from hedon.sweep.response import points, responses
 from hedon.text import count
 
 PAGE = "report.md"
@@ -41,11 +41,11 @@ def write_report(plan: SweepPlan, table: pl.DataFrame, folder: Path, only: Seque
         The files written, the page first.
 
     Raises:
-        SweepError: there is no world yet, or a column is not one.
+        CompareError: there is no world yet, or a column is not one.
         RecordError: the folder cannot be written.
     """
     if table.is_empty():
-        raise SweepError("no batch of the sweep is done yet: there is nothing to report")
+        raise CompareError("no batch of the sweep is done yet: there is nothing to report")
     shown = responses(table, only, plan.factors)
     figures: dict[str, Figure] = {}
     varied = [factor for factor in plan.factors if table[factor].n_unique() > 1]

@@ -1,0 +1,1 @@
+"""Comparisons of worlds from any source: contrasts, power, response curves and maps."""

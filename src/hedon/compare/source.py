@@ -1,0 +1,180 @@
+"""Where the worlds of a comparison come from: runs, a sweep, an assay, a study, or a table in a file."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+
+from hedon.analysis.world.record import WorldRecord, read_worlds
+from hedon.compare.error import CompareError
+from hedon.jobs.store import Store
+from hedon.measure.catalogue import world_row
+from hedon.record.folder import holds_run
+from hedon.record.reader import open_run
+from hedon.report.answer import FACTORS, WORLDS
+from hedon.sweep.collect import collect, table_value
+from hedon.sweep.plan import PLAN, load_plan
+
+SOURCE, CONDITION = "source", "condition"
+"""Factors of worlds from two sources, and of runs with several configs."""
+KINDS = "runs, a sweep, an assay, a study, or a table (.csv, .parquet)"
+
+
+@dataclass(frozen=True, eq=False)
+class WorldTable:
+    """Worlds to compare.
+
+    Attributes:
+        name: The source, as the user named it.
+        rows: A row per world: its seed, its value of each factor, and its measures.
+        factors: Columns that distinguish conditions.
+        steps: The length of each world, if all have the same [step].
+        planned: The values of each factor in the order of a sweep's plan, including those without a world so far.
+    """
+
+    name: str
+    rows: pl.DataFrame
+    factors: tuple[str, ...] = ()
+    steps: int | None = None
+    planned: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+
+
+def read_table(source: str) -> WorldTable:
+    """Reads the worlds of one source.
+
+    Args:
+        source: A run or a folder of runs, a sweep, an assay, a study, or a file with a row per world.
+
+    Raises:
+        CompareError: It is none of these, or holds no world.
+        RecordError, ConfigError, SweepError: It cannot be read.
+    """
+    runs = _run_folders(source)
+    return _runs_table(source, _records(runs)) if runs else _other_table(source)
+
+
+def read_both(sources: tuple[str, str]) -> WorldTable:
+    """Reads the worlds of two sources as one table with the factor "source"; runs are cut to a common length.
+
+    Args:
+        sources: Two different sources, each as for `read_table`.
+
+    Raises:
+        CompareError: They are the same, one holds several conditions of runs, or their worlds differ in length.
+        RecordError, ConfigError, SweepError: One cannot be read.
+    """
+    if sources[0] == sources[1]:
+        raise CompareError(f"{sources[0]} is named twice: name two sources, or --by FACTOR within one")
+    folders = [_run_folders(source) for source in sources]
+    records = [_records(each) for each in folders]
+    if all(records):
+        end = min(world.end_step for each in records for world in each)
+        records = [[world.until(end) for world in each] for each in records]
+    tables = [
+        _runs_table(source, own) if own else _other_table(source) for source, own in zip(sources, records, strict=True)
+    ]
+    for table in tables:
+        if CONDITION in table.factors and folders[sources.index(table.name)]:
+            raise CompareError(
+                f"{table.name} holds runs of several configs: name a folder of one, or compare these with one another "
+                f"by `hedon compare {table.name} --by {CONDITION}`"
+            )
+    lengths = [table.steps for table in tables]
+    if None not in lengths and lengths[0] != lengths[1]:
+        said = " and of ".join(f"{table.name} have {table.steps:,} steps" for table in tables)
+        raise CompareError(f"worlds of {said}: compare worlds of equal length")
+    factors = tuple(dict.fromkeys([*tables[0].factors, *tables[1].factors]))
+    shared = [name for name in tables[0].rows.columns if name in tables[1].rows.columns]
+    if not set(shared) - {"seed", *factors}:
+        raise CompareError(f"{sources[0]} and {sources[1]} have no measure in common")
+    parts = [
+        table.rows.select(
+            pl.lit(table.name).alias(SOURCE), *(c for c in table.rows.columns if c in (*shared, *factors))
+        )
+        for table in tables
+    ]
+    rows = pl.concat(parts, how="diagonal_relaxed")
+    return WorldTable(" and ".join(sources), rows, (SOURCE, *factors), lengths[0] if len(set(lengths)) == 1 else None)
+
+
+def _run_folders(source: str) -> list[Path]:
+    """The run that a folder is, or the runs that it holds; none if it is a sweep, an assay, a study, or no folder."""
+    folder = Path(source)
+    if "://" in source or not folder.is_dir():
+        return []
+    if holds_run(folder):
+        return [folder]
+    if (folder / PLAN).is_file() or _answer(folder) is not None:
+        return []
+    return sorted(each for each in folder.iterdir() if each.is_dir() and holds_run(each))
+
+
+def _records(folders: Sequence[Path]) -> list[WorldRecord]:
+    return read_worlds(open_run(each) for each in folders)
+
+
+def _runs_table(source: str, records: Sequence[WorldRecord]) -> WorldTable:
+    """The worlds of some runs, up to the step that all of them were planned to reach."""
+    end = min(world.end_step for world in records)
+    worlds: dict[tuple[str, int], list[WorldRecord]] = {}
+    for world in records:
+        condition = world.condition.removesuffix(f": {world.species}")
+        worlds.setdefault((condition, world.seed), []).append(world.until(end))
+    several = len({condition for condition, _ in worlds}) > 1
+    rows = [({CONDITION: condition} if several else {}) | world_row(each) for (condition, _), each in worlds.items()]
+    return WorldTable(source, _frame(rows), (CONDITION,) if several else (), end)
+
+
+def _other_table(source: str) -> WorldTable:
+    """The worlds of a file, a sweep, an assay or a study."""
+    path = Path(source)
+    if path.suffix in (".csv", ".parquet") and path.is_file():
+        rows = pl.read_csv(path) if path.suffix == ".csv" else pl.read_parquet(path)
+        return _checked(WorldTable(source, rows))
+    store = Store(source)
+    if store.read(PLAN) is not None:
+        return _sweep_table(source, store)
+    content = _answer(path)
+    if content is None:
+        raise CompareError(f"{source}: holds no worlds to compare: give {KINDS}")
+    steps = content.get("steps")
+    rows = _frame(content["tables"][WORLDS]["rows"])
+    return _checked(WorldTable(source, rows, tuple(content.get(FACTORS, ())), steps))
+
+
+def _sweep_table(source: str, store: Store) -> WorldTable:
+    plan = load_plan(store)
+    rows = collect(plan, store)
+    if rows.is_empty():
+        raise CompareError(f"{source}: no batch of the sweep is done yet: there is nothing to compare")
+    planned = {}
+    for name in plan.factors:
+        values = [table_value(each.settings[name]) for each in plan.conditions]
+        planned[name] = list(dict.fromkeys(map(str, values) if rows.schema[name] == pl.String else values))
+    return WorldTable(source, rows, plan.factors, plan.steps, planned)
+
+
+def _answer(folder: Path) -> Mapping[str, Any] | None:
+    """The summary of an assay or a study: a JSON file with a table of worlds; None if there is none."""
+    for path in sorted(folder.glob("*.json")):
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+            rows = content["tables"][WORLDS]["rows"]
+        except (OSError, ValueError, KeyError, TypeError):
+            continue
+        if isinstance(rows, list):
+            return content
+    return None
+
+
+def _checked(table: WorldTable) -> WorldTable:
+    if "seed" not in table.rows.columns or table.rows.is_empty():
+        raise CompareError(f"{table.name}: has no worlds yet: there must be a column seed, and a row for each world")
+    return table
+
+
+def _frame(rows: Sequence[Mapping[str, Any]]) -> pl.DataFrame:
+    return pl.DataFrame(rows, infer_schema_length=None)
