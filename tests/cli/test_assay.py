@@ -65,7 +65,7 @@ def test_where_motion_kills_its_reward_is_selected_against(folder: Path) -> None
         assert action["z slope"] < -3
         assert food["p slope"] > 0.001
     assert not check_run(folder / "costly" / "run").findings
-    assert (folder / "costly" / "landscape.png").stat().st_size > 10_000
+    assert (folder / "costly" / "landscape.svg").stat().st_size > 10_000
     assert "| descendants" in (folder / "costly" / "landscape.md").read_text(encoding="utf-8")
 
 

@@ -16,7 +16,7 @@ def test_report_prints_figures_and_files(tmp_path: Path) -> None:
     result = CliRunner().invoke(APP, [str(folder)])
     assert result.exit_code == 0
     assert " lifetime of the dead [step]" in result.output
-    assert f"wrote {folder}/figures/weights.png" in result.output
+    assert f"wrote {folder}/figures/weights.svg" in result.output
     assert (folder / "summary.json").is_file()
 
 

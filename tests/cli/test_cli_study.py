@@ -40,7 +40,7 @@ def test_items_of_settings_alone_need_no_run(tmp_path: Path) -> None:
     growth = [row for row in found["tables"]["parameters_food"]["rows"] if row["setting"] == "food.normal.growth_rate"]
     assert growth[0]["value"] == "1.0"
     for name in ("hazard", "birth", "walk", "body"):
-        assert (tmp_path / "studies" / NAME / "figures" / f"{name}.png").stat().st_size > 10_000
+        assert (tmp_path / "studies" / NAME / "figures" / f"{name}.svg").stat().st_size > 10_000
 
 
 def test_the_page_holds_its_figures_and_says_what_they_are_made_of(made: Path) -> None:

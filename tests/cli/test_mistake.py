@@ -42,7 +42,7 @@ def test_what_a_session_draws_on_does_not_matter(tmp_path):
         command, env=os.environ | {"MPLBACKEND": "nonsense"}, capture_output=True, text=True, check=False
     )
     assert answer.returncode == 0, answer.stderr
-    assert (tmp_path / "run" / "figures" / "world.png").exists()
+    assert (tmp_path / "run" / "figures" / "world.svg").exists()
 
 
 def test_values_of_a_factor_are_numbers():

@@ -35,7 +35,7 @@ def test_a_run_leaves_what_is_documented(finished):
     folder, printed = finished
     files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
     expected = {"config.toml", "manifest.json", "summary.json", "final.npz", "agents/living.parquet"}
-    expected |= {f"figures/{name}.png" for name in ("weights", "history", "population", "world")}
+    expected |= {f"figures/{name}.svg" for name in ("weights", "history", "population", "world")}
     assert expected <= files
     assert any(name.startswith("frames/part-") for name in files)
     assert "poison (released, modified): 2 worlds" in printed
@@ -168,7 +168,7 @@ def test_a_signal_ends_after_the_window_and_keeps_everything(tmp_path, name):
     assert done % 256 == 0
     population = hedon.open_run(folder).population()
     assert population["step"].max() == done
-    assert (folder / "figures" / "population.png").exists()
+    assert (folder / "figures" / "population.svg").exists()
 
 
 def test_nohup_keeps_a_run_alive(tmp_path):

@@ -131,8 +131,8 @@ def test_a_report_that_is_killed_leaves_nothing_behind(run):
         left = set(content(run)) - whole
         assert not [name for name in left if ".tmp" in name or "/." in name]
         for name in left:
-            if name.endswith(".png"):
-                assert (run / name).read_bytes().endswith(b"IEND\xaeB`\x82"), name
+            if name.endswith(".svg"):
+                assert (run / name).read_bytes().rstrip().endswith(b"</svg>"), name
 
 
 def test_a_checkpoint_that_is_a_folder_is_passed_over(run):

@@ -93,7 +93,7 @@ def test_what_the_extinct_do_not_have_is_left_out_and_they_are_counted(tmp_path)
     assert measures["mean of w_action"]["worlds"] == SEEDS - 1
     assert measures["share of worlds extinct"]["difference"] == pytest.approx(1 / SEEDS)
     assert "Worlds that died out" in said
-    assert (Path(place) / "compare" / "compare.png").stat().st_size > 5000
+    assert (Path(place) / "compare" / "compare.svg").stat().st_size > 5000
     assert "| agents alive" in (Path(place) / "compare" / "compare.md").read_text()
 
 
@@ -186,7 +186,7 @@ def test_simulated_power_meets_that_of_the_t_test(effect):
 
 def power_rows(folder: Path, *words: str) -> list[dict]:
     call("power", *words, "--out", str(folder / "power"))
-    assert (folder / "power" / "power.png").stat().st_size > 5000
+    assert (folder / "power" / "power.svg").stat().st_size > 5000
     return json.loads((folder / "power" / "power.json").read_text())["tables"]["power"]["rows"]
 
 

@@ -214,8 +214,8 @@ def test_the_commands_report_what_was_made(tmp_path):
     page = (Path(place) / "report" / "report.md").read_text()
     assert "8 of 8 worlds (4 settings x 2 seeds) of 640 steps" in page
     for name in ("curve-energy-basic-cost", "curve-birth-kappa", "map-energy-basic-cost-birth-kappa-alive_mean"):
-        assert (Path(place) / "report" / f"{name}.png").stat().st_size > 5000
-        assert f"({name}.png)" in page
+        assert (Path(place) / "report" / f"{name}.svg").stat().st_size > 5000
+        assert f"({name}.svg)" in page
     done = CliRunner().invoke(app, ["sweep", "report", place, "--only", "alive_maen"])
     assert "did you mean alive_mean?" in str(done.exception)
 

@@ -17,10 +17,13 @@ def report(
     out: Annotated[
         Path | None, typer.Option(help="Folder of the report; by default RUN itself, or report for several runs.")
     ] = None,
+    figures: Annotated[
+        bool, typer.Option("--figures/--no-figures", help="Whether to draw figures, which takes most of the time.")
+    ] = True,
 ) -> None:
     """Summarize runs on one page, with figures, tables and the claims of studies about them.
 
-    Writes report.html (one file that holds everything, for any browser), report.md, figures/*.png and analysis/
+    Writes report.html (one file that holds everything, for any browser), report.md, figures/*.svg and analysis/
     (every number, as JSON and CSV), and RUN/summary.json for each run. Existing files are replaced. Prints our
     numbers next to those that studies report of the preset. Also works on runs that are still running, were interrupted
     or have damaged files; the report then says so.
@@ -30,10 +33,10 @@ def report(
       hedon report runs/baseline
       hedon report runs/small runs/large --out comparison
     """
-    show_report(runs[0], make_console(), *runs[1:], out=out)
+    show_report(runs[0], make_console(), *runs[1:], out=out, figures=figures)
 
 
-def show_report(run: Path, console: "Console", *others: Path, out: Path | None = None) -> None:
+def show_report(run: Path, console: "Console", *others: Path, out: Path | None = None, figures: bool = True) -> None:
     """Writes a report on one or more runs, and prints their summaries and where the files are.
 
     Args:
@@ -41,6 +44,7 @@ def show_report(run: Path, console: "Console", *others: Path, out: Path | None =
         console: Where it prints.
         others: Folders of more runs.
         out: Folder of the report; None for one in the run's folder.
+        figures: Whether to draw figures.
     """
     # Imported here because this takes seconds: neither another command nor the start of a run must wait for it.
     import json
@@ -52,7 +56,7 @@ def show_report(run: Path, console: "Console", *others: Path, out: Path | None =
 
     runs = [open_run(path) for path in (run, *others)]
     with StepDisplay("writing the report") as tell:
-        files = write_report(*runs, folder=out, tell=tell)
+        files = write_report(*runs, folder=out, figures=figures, tell=tell)
     for file in files[: len(runs)]:
         console.print(summary_table(json.loads(file.read_text(encoding="utf-8"))))
     made = next(file for file in files if file.name == "analysis.json")

@@ -57,10 +57,10 @@ def write_report(plan: SweepPlan, table: pl.DataFrame, folder: Path, only: Seque
                 table, pair, name, title
             )
     with one_writer(folder, "the report"):
-        for stale in [*folder.glob("curve-*.png"), *folder.glob("map-*.png")]:
+        for stale in [*folder.glob("curve-*.svg"), *folder.glob("map-*.svg")]:
             if stale.stem not in figures:  # of a plan before
                 stale.unlink()
-        files = [save_figure(figure, folder / f"{name}.png") for name, figure in figures.items()]
+        files = [save_figure(figure, folder / f"{name}.svg") for name, figure in figures.items()]
         page = _page(plan, table, shown, list(figures)).encode()
         write_atomically(folder / PAGE, lambda file: file.write(page))
     return [folder / PAGE, *files]
@@ -87,7 +87,7 @@ def _page(plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str], figure
     ]
     if plan.factors and len(plan.conditions) <= MOST_CELLS:
         lines += [pipe_table(*cells(settings_table(plan, table, shown)))]
-    lines += [line for name in figures for line in (f"![{name}]({name}.png)", "")]
+    lines += [line for name in figures for line in (f"![{name}]({name}.svg)", "")]
     return "\n".join(lines).rstrip() + "\n"
 
 

@@ -92,15 +92,14 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
-    """Writes a figure as PNG, atomically, and returns its path.
+    """Writes a figure as SVG, or as PNG if the path says so, atomically, and returns the path.
 
     Args:
-        figure: what to write.
-        path: of the file; its folder is there.
+        figure: What to write.
+        path: Of the file; its folder exists.
     """
-    with styled():
-        _lay_out(figure)
-        write_atomically(path, FigureCanvasAgg(figure).print_png)
+    content = png_bytes(figure) if path.suffix == ".png" else svg_bytes(figure)
+    write_atomically(path, lambda file: file.write(content))
     return path
 
 

@@ -56,11 +56,11 @@ def write_answer(folder: Path, answer: Answer) -> list[Path]:
     name, tables = answer.name, answer.tables
     shown = {each.name: {"title": each.title, "note": each.note, "rows": each.rows.to_dicts()} for each in tables}
     summary = json.dumps(plain({**answer.content, "tables": shown}), indent=1, ensure_ascii=False, allow_nan=False)
-    lines = [f"# {answer.title}", "", answer.intro, "", f"![{answer.title}]({name}.png)", ""]
+    lines = [f"# {answer.title}", "", answer.intro, "", f"![{answer.title}]({name}.svg)", ""]
     for each in (table for table in tables if table.shown):
         lines += [f"## {each.title}", "", pipe_table(*cells(each)), "", *([each.note, ""] if each.note else [])]
     files = {f"{name}.json": summary + "\n", f"{name}.md": "\n".join(lines).rstrip() + "\n", **answer.files}
     with one_writer(folder, "the answer"):
         for each, text in files.items():
             write_atomically(folder / each, lambda file, text=text: file.write(text.encode()))
-        return [*(folder / each for each in files), save_figure(answer.figure, folder / f"{name}.png")]
+        return [*(folder / each for each in files), save_figure(answer.figure, folder / f"{name}.svg")]

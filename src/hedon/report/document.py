@@ -34,7 +34,7 @@ RUN/
   checkpoints/step-….npz         the newest two, for `hedon resume` and `hedon branch`
   fault/step-….npz               where a run stopped at a fault: the worlds as they were found
   final.npz                      last state of one world, for a picture
-  summary.json, figures/*.png    made at the end of the run, and again by `hedon report RUN`
+  summary.json, figures/*.svg    made at the end of the run, and again by `hedon report RUN`
   report.html, report.md         likewise: everything on one page
   analysis/                      likewise, and by `hedon analyze RUN`: every number, as JSON and CSV
 ```
@@ -119,7 +119,7 @@ def records_page() -> str:
 
 def figure_table() -> str:
     """The figures of a report, as a Markdown table: file, question, caption."""
-    rows = [f"| `{kind.name}.png` | {kind.question} | {kind.caption} |" for kind in FIGURES]
+    rows = [f"| `{kind.name}.svg` | {kind.question} | {kind.caption} |" for kind in FIGURES]
     return "\n".join(["| figure | question | what is drawn, and how to read it |", "|---|---|---|", *rows]) + "\n"
 
 

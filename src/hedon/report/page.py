@@ -4,6 +4,7 @@ import base64
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -14,6 +15,9 @@ from hedon.config import dump_toml
 from hedon.config.load import changed_settings
 from hedon.config.problem import format_value
 from hedon.demography.forecast import setting_warnings
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import svg_bytes
+from hedon.record.atomic import write_atomically
 from hedon.record.reader import Run
 from hedon.report.analysis import Analysis
 from hedon.report.markdown import escape_markdown, pipe_table
@@ -33,8 +37,8 @@ class FigureFile:
     Attributes:
         condition: that it shows.
         question: that it answers, its heading.
-        path: of its PNG file, relative to the report.
-        svg: the same as SVG.
+        path: of its SVG file, relative to the report.
+        svg: the content of the file.
         caption: how to read it; may be empty.
     """
 
@@ -48,6 +52,20 @@ class FigureFile:
     def uri(self) -> str:
         """The SVG as a data URI."""
         return "data:image/svg+xml;base64," + base64.b64encode(self.svg).decode()
+
+
+def write_figure(folder: Path, condition: str, named: NamedFigure, path: str) -> FigureFile:
+    """Writes a figure beside a page.
+
+    Args:
+        folder: Of the page.
+        condition: What the figure shows.
+        named: The figure.
+        path: Of its file, relative to the folder.
+    """
+    svg = svg_bytes(named.figure)
+    write_atomically(folder / path, lambda file: file.write(svg))
+    return FigureFile(condition, named.question, path, svg, named.caption)
 
 
 def report_pages(analysis: Analysis, figures: Sequence[FigureFile]) -> tuple[str, str]:

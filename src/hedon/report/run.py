@@ -13,7 +13,6 @@ from pathlib import Path
 
 from hedon.config.color import food_colors
 from hedon.figure.named import NamedFigure
-from hedon.figure.style import save_figure, svg_bytes
 from hedon.figure.world import draw_world, telling_agent
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
@@ -24,14 +23,16 @@ from hedon.record.snapshot import load_snapshot
 from hedon.report.analysis import ANALYSIS, Analysis, analyze, write_analysis
 from hedon.report.condition import condition_figures
 from hedon.report.figure import WORLD
-from hedon.report.page import FigureFile, report_pages
+from hedon.report.page import FigureFile, report_pages, write_figure
 from hedon.report.summary import summarize
 from hedon.report.topic import TOPICS, Tell, tell_nobody
 
 HTML, MARKDOWN = "report.html", "report.md"
 
 
-def write_report(*runs: Run, folder: Path | str | None = None, tell: Tell = tell_nobody) -> list[Path]:
+def write_report(
+    *runs: Run, folder: Path | str | None = None, figures: bool = True, tell: Tell = tell_nobody
+) -> list[Path]:
     """Writes the report of some runs, over those that are there.
 
     Where another report is being written into the same folder, this one waits for it. Damaged parts are left out; the
@@ -40,11 +41,12 @@ def write_report(*runs: Run, folder: Path | str | None = None, tell: Tell = tell
     Args:
         runs: one or more.
         folder: for all but the summaries; by default that of the run, or `report` for several.
+        figures: whether to draw figures, which takes most of the time.
         tell: is told of each step.
 
     Returns:
         The files written: a `summary.json` per run, `report.html`, `report.md`, `analysis.json` (beside its CSV
-        files), `figures/*.png`.
+        files), `figures/*.svg`.
 
     Raises:
         RecordError: a folder cannot be written, or a `final.npz` is damaged; all other files are there then.
@@ -57,17 +59,17 @@ def write_report(*runs: Run, folder: Path | str | None = None, tell: Tell = tell
         tell(len(TOPICS), 2 * len(TOPICS), "figures")
         summaries = [_write_summary(run) for run in analysis.runs]
         (folder / FIGURES).mkdir(exist_ok=True)
-        figures: list[FigureFile] = []
-        for group, named in _figures(analysis, faults):
-            figures.append(_save(folder, group, named, {figure.path for figure in figures}))
+        drawn: list[FigureFile] = []
+        for group, named in _figures(analysis, faults) if figures else ():
+            drawn.append(_save(folder, group, named, {figure.path for figure in drawn}))
         answers = write_analysis(analysis, folder / ANALYSIS)[0]
-        pages = dict(zip((HTML, MARKDOWN), report_pages(analysis, figures), strict=True))
+        pages = dict(zip((HTML, MARKDOWN), report_pages(analysis, drawn), strict=True))
         for name, text in pages.items():
             content = text.encode()
             write_atomically(folder / name, lambda file, content=content: file.write(content))
     if faults:
         raise faults[0]
-    return [*summaries, *(folder / name for name in pages), answers, *(folder / figure.path for figure in figures)]
+    return [*summaries, *(folder / name for name in pages), answers, *(folder / figure.path for figure in drawn)]
 
 
 def _write_summary(run: Run) -> Path:
@@ -109,7 +111,6 @@ def _with_prefix(prefix: str, named: NamedFigure, *, several: bool) -> NamedFigu
 
 def _save(folder: Path, condition: str, named: NamedFigure, taken: Container[str]) -> FigureFile:
     """Writes a figure under its name, with a number where another has it: prefixes may differ in signs alone."""
-    names = (f"{FIGURES}/{named.name}{end}.png" for end in chain([""], (f"-{i}" for i in count(2))))
+    names = (f"{FIGURES}/{named.name}{end}.svg" for end in chain([""], (f"-{i}" for i in count(2))))
     path = next(name for name in names if name not in taken)
-    save_figure(named.figure, folder / path)
-    return FigureFile(condition, named.question, path, svg_bytes(named.figure), named.caption)
+    return write_figure(folder, condition, named, path)

@@ -11,13 +11,12 @@ from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.topic.world import regime
 from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.figure.named import NamedFigure
-from hedon.figure.style import save_figure, svg_bytes
 from hedon.measure.catalogue import world_row
 from hedon.record.atomic import write_atomically
 from hedon.record.folder import FIGURES
 from hedon.record.lock import one_writer
 from hedon.report.answer import FACTORS, WORLDS
-from hedon.report.page import FigureFile
+from hedon.report.page import FigureFile, write_figure
 from hedon.report.study_page import HTML, BuiltItem, study_pages
 from hedon.report.summary import plain
 from hedon.study.gather import Gathered
@@ -79,8 +78,7 @@ def _make(item: Item, inputs: ItemInputs, gathered: Gathered, folder: Path) -> B
     parts: list[FigureFile | ResultTable] = []
     for part in item.make(inputs):
         if isinstance(part, NamedFigure):
-            path = save_figure(part.figure, folder / FIGURES / f"{part.name}.png").relative_to(folder)
-            parts.append(FigureFile(item.title, part.question, path.as_posix(), svg_bytes(part.figure), part.caption))
+            parts.append(write_figure(folder, item.title, part, f"{FIGURES}/{part.name}.svg"))
         else:
             parts.append(part)
     return BuiltItem(item, _worlds_table(item, inputs, gathered), tuple(parts))

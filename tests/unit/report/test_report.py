@@ -1,11 +1,11 @@
 import io
+import re
 from collections import Counter
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
-import numpy as np
 import pytest
-from matplotlib.image import imread
 from synthetic_run import write_run
 
 from hedon.record.error import RecordError
@@ -13,7 +13,8 @@ from hedon.record.reader import open_run
 from hedon.report.run import write_report
 
 FIGURES = ["history", "weights", "population", "regime", "survival", "selection", "lineage", "demography", "world"]
-NAMES = ["summary.json", "report.html", "report.md", "analysis.json", *(f"{name}.png" for name in FIGURES)]
+SVG = "{http://www.w3.org/2000/svg}"
+NAMES = ["summary.json", "report.html", "report.md", "analysis.json", *(f"{name}.svg" for name in FIGURES)]
 
 
 @pytest.mark.filterwarnings("error")
@@ -35,9 +36,22 @@ def test_every_run_has_a_report(tmp_path: Path, options: dict) -> None:
     files = write_report(open_run(write_run(tmp_path / "run", **options)))
     assert [file.name for file in files] == NAMES
     for file in files[4:]:
-        image = imread(file)
-        assert image.shape[0] > 200
-        assert len(np.unique(image[::3, ::3, :3].sum(axis=-1))) > 20  # lines, letters, colors
+        drawing = ElementTree.parse(file).getroot()
+        assert float(drawing.attrib["height"].removesuffix("pt")) > 100
+        marks = sum(1 for kind in ("path", "use") for _ in drawing.iter(f"{SVG}{kind}"))
+        assert marks > 20, "lines and letters"
+        assert len(set(re.findall(r"#[0-9a-f]{6}", file.read_text()))) > 2, "colors"
+
+
+def test_without_figures_a_report_has_all_numbers(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "run", intervals=3, worlds=2)
+    with_figures = write_report(open_run(folder))
+    numbers = [(folder / "analysis" / "analysis.json").read_bytes(), (folder / "summary.json").read_bytes()]
+    files = write_report(open_run(folder), folder=tmp_path / "lean", figures=False)
+    assert [file.name for file in files] == NAMES[:4]
+    assert [(tmp_path / "lean" / "analysis" / "analysis.json").read_bytes(), files[0].read_bytes()] == numbers
+    assert "<figure>" in with_figures[1].read_text()
+    assert "<figure>" not in files[1].read_text()
 
 
 def test_a_report_is_written_again(tmp_path: Path) -> None:

@@ -92,6 +92,6 @@ def test_the_report_begins_with_the_answer_and_its_picture(tmp_path: Path, analy
     assert re.search(r"what evolved\?</h2>\s*<ul class=\"answers\"><li>Among the agents", page)
     order = [
         text.index(part)
-        for part in ("- Among the agents alive at the end", "figures/history.png", "figures/weights.png", "## Tables")
+        for part in ("- Among the agents alive at the end", "figures/history.svg", "figures/weights.svg", "## Tables")
     ]
     assert order == sorted(order)

@@ -139,7 +139,7 @@ def run_quick(folder: Path, name: str) -> dict[str, list[dict]]:
     assert answers == {OPEN}
     assert len(tables["world"]) == sum(len(item["worlds"]) for item in found["items"]), "one seed of each condition"
     assert read_table(str(folder / "studies" / name)).factors == ("condition",)
-    assert (folder / "studies" / name / "figures" / f"{name}.png").stat().st_size > 10_000
+    assert (folder / "studies" / name / "figures" / f"{name}.svg").stat().st_size > 10_000
     return tables
 
 

@@ -112,4 +112,4 @@ def test_any_number_of_worlds_is_drawn(tmp_path: Path, worlds: int) -> None:
     _, figure = draw("history-poor", poor=read_worlds([open_run(run)]))
     assert len(figure.axes) == 4
     assert figure.get_size_inches()[0] <= 10
-    assert save_figure(figure, tmp_path / "history.png").stat().st_size > 20_000
+    assert save_figure(figure, tmp_path / "history.svg").stat().st_size > 20_000

@@ -120,4 +120,4 @@ def test_any_number_of_worlds_is_drawn(five: list[WorldRecord], worlds: int, tmp
     some = five[:worlds]
     _, figure = draw("weights-places", uniform=some, centered=some, relocation=five[2:3])
     assert figure.get_size_inches()[0] <= 10
-    assert save_figure(figure, tmp_path / "weights.png").stat().st_size > 20_000
+    assert save_figure(figure, tmp_path / "weights.svg").stat().st_size > 20_000
