@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.statistic.interval import SHARE, mean_interval
+from hedon.statistic.law import normal_below, normal_quantile, t_quantile
 from hedon.statistic.minimum import FOR_INTERVAL
 
 REPLICATES = 1000
@@ -45,8 +45,8 @@ def world_interval(values: NDArray[np.float64], worlds: int) -> Floats:
     """
     if worlds < FOR_INTERVAL:
         return np.full((2, *values.shape[1:]), np.nan)
-    reach = math.sqrt(worlds / (worlds - 1)) * float(stats.t.ppf(0.975, worlds - 1))
-    tail = float(stats.norm.cdf(-reach))
+    reach = math.sqrt(worlds / (worlds - 1)) * t_quantile(0.975, worlds - 1)
+    tail = normal_below(-reach)
     known = np.isfinite(values)
     enough = known.mean(axis=0) >= 1.0 - _FAILED
     bounds = np.nanquantile(np.where(known | ~enough, np.where(known, values, 0.0), np.nan), (tail, 1.0 - tail), axis=0)
@@ -94,7 +94,7 @@ def diffusion_strength(change: Floats, variation: Floats, worlds: int) -> Estima
     strength = float(change.sum()) / total
     if worlds < FOR_INTERVAL:
         return Estimate(strength, math.nan, math.nan)
-    reach = float(stats.norm.ppf(0.975)) * math.sqrt(float(((change - strength * variation) ** 2).sum())) / total
+    reach = normal_quantile(0.975) * math.sqrt(float(((change - strength * variation) ** 2).sum())) / total
     return Estimate(strength, strength - reach, strength + reach)
 
 

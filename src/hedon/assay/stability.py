@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
 from hedon.analysis.gene.course import WorldCourse, world_course
 from hedon.analysis.world.record import SEED, generator
@@ -14,6 +13,7 @@ from hedon.assay.sample import Sample
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import rank_score
 from hedon.statistic.interval import Interval, mean_interval
+from hedon.statistic.law import normal_above, normal_below
 
 TIMES = 50
 """Intervals of a course."""
@@ -173,11 +173,11 @@ def _corrected(courses: Sequence[WeightCourse]) -> list[WeightCourse]:
 
 
 def _two_sided(scores: Floats) -> float:
-    return float(2.0 * stats.norm.sf(abs(_combined(scores))))
+    return float(2.0 * normal_above(abs(_combined(scores))))
 
 
 def _below(scores: Floats) -> float:
-    return float(stats.norm.cdf(_combined(scores)))
+    return normal_below(_combined(scores))
 
 
 def _combined(scores: Floats) -> float:

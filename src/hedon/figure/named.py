@@ -1,8 +1,10 @@
 """A figure with the question that it answers and how it is read."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from matplotlib.figure import Figure
+if TYPE_CHECKING:  # takes a third of a second to load
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -18,7 +20,7 @@ class NamedFigure:
 
     name: str
     question: str
-    figure: Figure
+    figure: "Figure"
     caption: str = ""
 
 
@@ -36,6 +38,6 @@ class FigureKind:
     question: str
     caption: str
 
-    def drawn(self, figure: Figure) -> NamedFigure:
+    def drawn(self, figure: "Figure") -> NamedFigure:
         """A figure of this kind."""
         return NamedFigure(self.name, self.question, figure, self.caption)

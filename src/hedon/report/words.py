@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 import polars as pl
-from scipy import stats
 
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import Conditions, WorldRecord
 from hedon.config.title import weight_title
 from hedon.record.reader import Run
+from hedon.statistic.law import normal_quantile
 
 LEVEL = 0.05
 """Chance at or below which a weight is called selected, corrected for all weights and tests."""
@@ -104,7 +104,7 @@ def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
     if test["p"] > HINT:
         return f"selection is not shown ({chance}), and nothing speaks for it so far."
     # What selection adds grows with time, what drift adds with its square root; worlds add up likewise.
-    times = (float(stats.norm.isf(LEVEL / 2 / tests)) / score) ** 2 / test["worlds"]
+    times = (-normal_quantile(LEVEL / 2 / tests) / score) ** 2 / test["worlds"]
     after = f"about {max(times, 1.1):.2g} times the steps"
     wait = "" if seconds is None else f", {_minutes((max(times, 1.1) - 1) * seconds)} more on this machine,"
     return f"selection is not shown ({chance}). If it goes on like this, {after}{wait} decide it."

@@ -5,11 +5,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.statistic.interval import LEVEL
+from hedon.statistic.law import t_quantile
 from hedon.statistic.minimum import FOR_INTERVAL
+
+stats: Any = load("scipy.stats", suppress_warning=True)
 
 Floats = NDArray[np.float64]
 
@@ -86,7 +89,7 @@ def paired_contrast(values: Floats, others: Floats) -> Contrast:
     if len(change) < 2:
         return Contrast(float(change.mean()) if len(change) else math.nan, *[math.nan] * 4)
     mean, spread = float(change.mean()), float(change.std(ddof=1))
-    half = float(stats.t.ppf(0.5 + LEVEL / 2, len(change) - 1)) * spread / math.sqrt(len(change))
+    half = t_quantile(0.5 + LEVEL / 2, len(change) - 1) * spread / math.sqrt(len(change))
     p = _permuted((change,), lambda x, axis: x.mean(axis=axis), "samples")
     bounds = (mean - half, mean + half) if len(change) >= FOR_INTERVAL else (math.nan, math.nan)
     return Contrast(mean, *bounds, mean / spread if spread > 0 else math.nan, p)

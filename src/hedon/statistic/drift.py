@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.statistic.interval import LEVEL, distance_interval, mean_bounds
+from hedon.statistic.law import chi2_above, chi2_below, normal_above, normal_quantile
 
 NAN = math.nan
 _TIE = 1e-6  # in units of a trait: records keep it with seven digits, walks with more
@@ -68,7 +68,7 @@ def rank_score(value: float, null: Floats, rng: np.random.Generator) -> float:
         return NAN
     tied = np.abs(null - value) <= _TIE
     below = np.count_nonzero((null < value) & ~tied) + int(rng.integers(0, np.count_nonzero(tied) + 1))
-    return float(stats.norm.ppf((below + 0.5) / (len(null) + 1)))
+    return normal_quantile((below + 0.5) / (len(null) + 1))
 
 
 def score_tests(scores: Floats) -> list[ScoreTest]:
@@ -81,16 +81,16 @@ def score_tests(scores: Floats) -> list[ScoreTest]:
     n = len(scores)
     if n == 0:
         return [ScoreTest(test, 0, NAN, NAN, NAN, NAN) for test in ("direction", "distance", "held")]
-    p = float(2.0 * stats.norm.sf(abs(scores.sum()) / math.sqrt(n)))
-    half = float(stats.norm.ppf(0.5 + LEVEL / 2)) / math.sqrt(n)
+    p = float(2.0 * normal_above(abs(scores.sum()) / math.sqrt(n)))
+    half = normal_quantile(0.5 + LEVEL / 2) / math.sqrt(n)
     effect, t_low, t_high = mean_bounds(scores)
     square = float(np.sum(scores**2))
     distance, low, high = distance_interval(scores)
     wide = (low, high) if n > 1 else (NAN, NAN)
     return [
         ScoreTest("direction", n, effect, t_low, t_high, p, NAN, effect - half, effect + half),
-        ScoreTest("distance", n, distance, *wide, float(stats.chi2.sf(square, n))),
-        ScoreTest("held", n, distance, *wide, float(stats.chi2.cdf(square, n))),
+        ScoreTest("distance", n, distance, *wide, chi2_above(square, n)),
+        ScoreTest("held", n, distance, *wide, chi2_below(square, n)),
     ]
 
 

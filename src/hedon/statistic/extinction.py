@@ -6,13 +6,17 @@ however short it was.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import NDArray
-from scipy import optimize, stats
 
 from hedon.statistic.interval import LEVEL
+from hedon.statistic.law import beta_below
 from hedon.statistic.survival import survival_curve
+
+optimize: Any = load("scipy.optimize", suppress_warning=True)
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -78,8 +82,8 @@ def _bounds(at_risk: NDArray[np.int64], deaths: NDArray[np.int64], followed: int
     lower = _product(np.append(first, followed), np.append(second, 1.0)) if followed else None
 
     def below(share: float) -> float:
-        by_lower = 1.0 if lower is None else float(stats.beta.cdf(share, *lower))
-        by_upper = 0.0 if upper is None else float(stats.beta.cdf(share, *upper))
+        by_lower = 1.0 if lower is None else beta_below(share, *lower)
+        by_upper = 0.0 if upper is None else beta_below(share, *upper)
         return 0.5 * (by_lower + by_upper)
 
     low = 0.0 if lower is None else optimize.root_scalar(lambda s: below(s) - tail, bracket=(0.0, 1.0)).root

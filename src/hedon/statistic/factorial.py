@@ -25,10 +25,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.statistic.correction import holm
 from hedon.statistic.interval import LEVEL
+from hedon.statistic.law import t_above, t_quantile
 
 Cell = tuple[bool, ...]
 """Which factors are there, in their order."""
@@ -102,8 +102,8 @@ def fit_factorial(cells: Mapping[Cell, Mapping[int, float]], factors: int) -> Fa
         estimate = float(weights @ values)
         parts = np.repeat(variances, counts) * weights**2
         error, freedom = math.sqrt(parts.sum()), _freedom(parts, np.repeat(counts, counts))
-        reach = float(stats.t.ppf(0.5 + LEVEL / 2, freedom)) * error if error > 0 else error
-        p = float(2.0 * stats.t.sf(abs(estimate) / error, freedom)) if error > 0 else NAN
+        reach = t_quantile(0.5 + LEVEL / 2, freedom) * error if error > 0 else error
+        p = 2.0 * t_above(abs(estimate) / error, freedom) if error > 0 else NAN
         seeds = _in_seeds(filled, factors, group, order)
         low, high = min(seeds, default=NAN), max(seeds, default=NAN)
         bounds = (estimate - reach, estimate + reach)

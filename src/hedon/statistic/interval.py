@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hedon.statistic.law import beta_quantile, chi2_quantile, t_quantile
 from hedon.statistic.minimum import FOR_INTERVAL
 
 LEVEL = 0.95
@@ -51,9 +52,7 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL, within: 
     mean = float(known.mean())
     if known.size < FOR_INTERVAL:
         return Interval(mean, None, None, known.size)
-    from scipy import stats  # takes half a second to load, and many tables have no interval
-
-    half = float(stats.t.ppf(0.5 + level / 2, known.size - 1) * known.std(ddof=1) / math.sqrt(known.size))
+    half = float(t_quantile(0.5 + level / 2, known.size - 1) * known.std(ddof=1) / math.sqrt(known.size))
     return Interval(mean, max(mean - half, within[0]), min(mean + half, within[1]), known.size)
 
 
@@ -88,10 +87,8 @@ def share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, fl
     Returns:
         Lower and upper bound.
     """
-    from scipy import stats
-
     tail = 0.5 * (1.0 - level)
-    low, high = (float(stats.beta.ppf(q, count + 0.5, of - count + 0.5)) for q in (tail, 1.0 - tail))
+    low, high = (beta_quantile(q, count + 0.5, of - count + 0.5) for q in (tail, 1.0 - tail))
     return low if count else 0.0, high if count < of else 1.0
 
 
@@ -106,7 +103,7 @@ def exact_share_interval(count: int, of: int, level: float = LEVEL) -> tuple[flo
     Returns:
         Lower and upper bound.
     """
-    from scipy import stats
+    from scipy import stats  # loads in half a second
 
     found = stats.binomtest(count, of).proportion_ci(level, method="exact")
     return float(found.low), float(found.high)
@@ -141,8 +138,6 @@ def distance_interval(values: NDArray[np.float64], level: float = LEVEL) -> tupl
 
 
 def _scale_bounds(scale: float, degrees: int, level: float) -> tuple[float, float]:
-    from scipy import stats
-
     tail = 0.5 * (1.0 - level)
-    low, high = (scale * math.sqrt(degrees / float(stats.chi2.ppf(q, degrees))) for q in (1.0 - tail, tail))
+    low, high = (scale * math.sqrt(degrees / chi2_quantile(q, degrees)) for q in (1.0 - tail, tail))
     return low, high

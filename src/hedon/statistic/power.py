@@ -9,11 +9,16 @@ Student's t test within a point.
 import math
 from bisect import bisect_left
 from functools import cache
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import NDArray
-from scipy import optimize, stats
+
+from hedon.statistic.law import t_quantile
+
+optimize: Any = load("scipy.optimize", suppress_warning=True)
+stats: Any = load("scipy.stats", suppress_warning=True)
 
 MOST = 10_000_000
 """Worlds beyond which none are counted."""
@@ -39,7 +44,7 @@ def t_test_power(effect: float, worlds: float, level: float = 0.05, *, paired: b
     """
     degrees = worlds - 1 if paired else 2 * worlds - 2
     shift = abs(effect) * math.sqrt(worlds if paired else worlds / 2)
-    edge = float(stats.t.ppf(1.0 - level / 2, degrees))
+    edge = t_quantile(1.0 - level / 2, degrees)
     if shift - edge > CERTAIN:  # where the noncentral law has no numbers
         return 1.0
     far = float(stats.nct.cdf(-edge, degrees, shift))  # by the wrong sign; NaN where too small for a number

@@ -8,12 +8,15 @@ chances of death drift over the run, because those cut off were born last.
 
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.statistic.interval import LEVEL
+
+stats: Any = load("scipy.stats", suppress_warning=True)
 
 AT_RISK = 20
 """Agents that must have reached an age for the curve to be read there: beyond, it is made of a few lives."""

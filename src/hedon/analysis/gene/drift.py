@@ -13,7 +13,6 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.analysis.descent.genealogy import Genealogy, depth, living_at
 from hedon.analysis.descent.walk import WALKS, mutation_law, neutral_means
@@ -23,6 +22,7 @@ from hedon.analysis.world.record import WorldRecord, generator
 from hedon.statistic.correction import holm
 from hedon.statistic.drift import ScoreTest, rank_score, rank_sum_p, score_tests
 from hedon.statistic.interval import mean_bounds
+from hedon.statistic.law import normal_above
 
 NAN = math.nan
 
@@ -100,7 +100,7 @@ def world_drift(
         mean = float(world.agents[name].to_numpy()[sample].mean(dtype=np.float64))
         low, median, high = (float(bound) for bound in np.quantile(null[law], (0.025, 0.5, 0.975)))
         score = rank_score(mean, null[law], rng)
-        p = float(2.0 * stats.norm.sf(abs(score)))
+        p = float(2.0 * normal_above(abs(score)))
         results.append(WorldDrift(name, law.mean, mean, low, median, high, score, p, generation))
     return results
 

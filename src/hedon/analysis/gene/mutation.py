@@ -11,14 +11,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special
 
 from hedon.analysis.agent.lifetime import durations
 from hedon.analysis.descent.genealogy import genealogy
 from hedon.analysis.descent.walk import is_mutated, mutation_law
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.bootstrap import REPLICATES, percentile_interval, resampled_sums
+from hedon.statistic.law import normal_above
+
+stats: Any = load("scipy.stats", suppress_warning=True)
 
 OUTCOMES = ("food", "lifespan", "children")
 SCALES = ("clipped", "rank")
@@ -119,7 +123,7 @@ def mutation_effects(
                 z = abs(effect) / error[g, k] if error[g, k] > 0 else np.nan
                 row = {"outcome": outcome, "weight": name, "scale": scale, "births": len(x), "parents": len(features)}
                 row |= {"effect": effect, "low": float(low[g, k]), "high": float(high[g, k])}
-                found.append(row | {"p": float(2.0 * stats.norm.sf(z))})
+                found.append(row | {"p": float(2.0 * normal_above(z))})
     return found
 
 
@@ -127,7 +131,7 @@ def _scaled(change: Floats, scale: str) -> Floats:
     if scale == "clipped":
         return np.clip(change, -CLIP, CLIP)
     rank = stats.rankdata(change, axis=0)
-    return np.asarray(stats.norm.ppf((rank - 0.5) / len(change)), np.float64)
+    return np.asarray(special.ndtri((rank - 0.5) / len(change)), np.float64)
 
 
 def _among_siblings(values: Floats, parent: NDArray[np.int64]) -> Floats:
