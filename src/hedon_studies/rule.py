@@ -10,11 +10,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import ArrayLike
-from scipy import stats
 
 from hedon.analysis import ResultTable, make_table
 from hedon.statistic import FOR_VERDICT, LEVEL, holm, mean_interval, share_interval
+
+stats: Any = load("scipy.stats", suppress_warning=True)
 
 CHANCE = 0.05
 """Chance, after correction, from which on an answer stays open."""

@@ -7,8 +7,9 @@ two conditions stand in `order`.
 import math
 from collections.abc import Iterator
 from functools import partial
+from typing import Any
 
-from scipy import optimize
+from lazy_loader import load
 
 from hedon.analysis import LAST_AGENTS, WorldRecord, last_mean, standard_drift
 from hedon.demography import cumulative_hazard
@@ -23,6 +24,8 @@ from hedon_studies.kanagawa_doya_2024.paper import (
     SEEDS,
     STEPS,
 )
+
+optimize: Any = load("scipy.optimize", suppress_warning=True)
 
 SOURCE = "Kanagawa & Doya (2024); docs/model.md, section 14"
 SAME_FACTOR = 1.5

@@ -3,10 +3,12 @@
 from typing import Any
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import NDArray
-from scipy import stats
 
 from hedon.statistic import LEVEL, paired_contrast
+
+stats: Any = load("scipy.stats", suppress_warning=True)
 
 
 def named_test(name: str, values: NDArray[np.float64]) -> dict[str, Any]:

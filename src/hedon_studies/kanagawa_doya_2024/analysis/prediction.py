@@ -5,9 +5,11 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from scipy import stats
+from lazy_loader import load
 
 from hedon.statistic import LEVEL
+
+stats: Any = load("scipy.stats", suppress_warning=True)
 
 NAN = math.nan
 FEWEST = 3
