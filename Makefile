@@ -17,19 +17,31 @@ unexport MAKEFLAGS
 # Where this is set, as in many containers, each process compiles all its Python modules again: seconds each time.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-long suite static sanitized sync cuda stubs viewer demo docs wheels clean
+.PHONY: run test test-more test-long everything suite suite-more static sanitized sync cuda stubs viewer demo docs wheels clean
 
 # The main job: a world in which a reward evolves within a minute on two cores.
 run: sync
 	$(RUN) hedon run appetite --steps 40960 --frames 64
 
-# All three side by side: each leaves a processor idle at times. What they install comes first.
-test: sync
+# What a change can break, in a few minutes. Both side by side: each leaves a processor idle at times.
+test: everything
+	$(MAKE) --no-print-directory --jobs=2 --output-sync=line static suite
+
+# All other tests: pages in a browser, emulated devices, processes that are killed, sites, sanitizers.
+test-more: everything
+	$(MAKE) --no-print-directory --jobs=2 --output-sync=line sanitized suite-more
+
+# Not `sync` first, which would remove what these tests need and install it again.
+everything: tools $(UV)
 	$(UV) sync --quiet $(BROWSER) $(SITE) $(EXTRA) --group cuda
-	$(MAKE) --no-print-directory --jobs=3 --output-sync=line static sanitized suite
+
+SUITE = $(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 suite: tools $(UV)
-	$(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
+	$(SUITE) -m "not long and not more"
+
+suite-more: tools $(UV)
+	$(SUITE) -m "more and not long"
 
 static: tools $(UV)
 	$(RUN) ruff check .
@@ -42,7 +54,7 @@ static: tools $(UV)
 sanitized: tools $(UV)
 	$(RUN) python tests/sanitize.py asan
 
-# The same questions asked hundreds of times, and those that take minutes: before a release, beside `make test`.
+# The same questions asked hundreds of times, and those that take minutes: before a release, beside `make test` and `make test-more`.
 test-long: sync
 	$(RUN) $(BROWSER) $(SITE) $(LONG) pyright
 	HEDON_NODES=10 HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=20 HEDON_DAMAGED=20 \

@@ -9,6 +9,7 @@ import pytest
 # Threads of NumPy's library spin while they wait for one another, on processors that another worker could use.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+TESTS = Path(__file__).parent
 LONGEST = (
     "test_combination.py",
     "test_assay.py",
@@ -44,8 +45,70 @@ LONGEST = (
 """Files of more than some ten seconds of a processor, the longest first."""
 
 
+MORE = (
+    "cli/test_assay.py",
+    "cli/test_bench.py",
+    "cli/test_cli_study.py",
+    "cli/test_input.py",
+    "cli/test_output.py",
+    "cli/test_run.py",
+    "cli/test_signal.py",
+    "contract/test_checkpoint.py",
+    "contract/test_cuda_failure.py",
+    "contract/test_cuda_run.py",
+    "contract/test_cuda_value.py",
+    "contract/test_cuda_window.py",
+    "contract/test_disk.py",
+    "contract/test_folder.py",
+    "contract/test_jobs.py",
+    "contract/test_kernel_symbols.py",
+    "contract/test_killed.py",
+    "contract/test_mechanism_record.py",
+    "contract/test_mechanism_report.py",
+    "contract/test_resume.py",
+    "contract/test_rule_neighbor.py",
+    "contract/test_rule_place.py",
+    "env/test_jax.py",
+    "env/test_record.py",
+    "env/test_value.py",
+    "machine/",
+    "property/test_damaged_file.py",
+    "property/test_untrusted_checkpoint.py",
+    "repository/test_docs.py",
+    "repository/test_notebooks.py",
+    "repository/test_site.py",
+    "sweep/test_lock.py",
+    "sweep/test_store.py",
+    "sweep/test_sweep_run.py",
+    "unit/check/test_check_run.py",
+    "unit/check/test_difference.py",
+    "unit/demography/test_forecast.py",
+    "unit/demography/test_unlearned.py",
+    "unit/report/test_page.py",
+    "unit/report/test_report.py",
+    "unit/study/test_classics.py",
+    "unit/study/test_study.py",
+    "view/",
+)
+"""Files and folders that only `make test-more` runs, except for their tests marked `smoke`: browsers, emulated devices,
+processes that are killed, whole reports and sites."""
+
+SHARES = {"test_calibration.py": 4, "test_combination.py": 3, "test_reference_model.py": 4}
+"""Files of which `make test` runs one case of so many, and `make test-more` the others."""
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Long files come first, so that no worker is left with one while the other has nothing to do."""
+    """Marks what `make test` leaves to `make test-more`; long files come first, so that no worker ends alone."""
+    seen = dict.fromkeys(SHARES, 0)
+    for item in items:
+        path = item.path.relative_to(TESTS).as_posix()
+        if path.startswith(MORE) and item.get_closest_marker("smoke") is None:
+            item.add_marker(pytest.mark.more)
+        elif item.path.name in SHARES:
+            if seen[item.path.name] % SHARES[item.path.name]:
+                item.add_marker(pytest.mark.more)
+            seen[item.path.name] += 1
     items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
 
 

@@ -55,6 +55,7 @@ def effects(path: Path) -> dict[tuple[str, str], dict]:
 
 
 @pytest.mark.long
+@pytest.mark.smoke
 def test_where_motion_kills_its_reward_is_selected_against(folder: Path) -> None:
     assert call(folder, "landscape", "baseline", *SHORT, "--out", "costly").returncode == 0
     found = effects(folder / "costly" / "landscape.json")

@@ -29,6 +29,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.smoke
 def test_items_of_settings_alone_need_no_run(tmp_path: Path) -> None:
     answer = call(tmp_path, "run", *LAWS, "--fidelity", "released")
     assert answer.returncode == 0, answer.stderr

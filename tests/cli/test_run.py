@@ -31,6 +31,7 @@ def finished(tmp_path_factory):
     return folder, answer.stdout
 
 
+@pytest.mark.smoke
 def test_a_run_leaves_what_is_documented(finished):
     folder, printed = finished
     files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}

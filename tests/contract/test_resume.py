@@ -52,6 +52,7 @@ def test_a_resumed_run_is_the_run_left_alone(tmp_path, seeds, frames):
         assert_same_run(tmp_path / "alone", tmp_path / f"{stop}")
 
 
+@pytest.mark.smoke
 def test_a_run_may_be_taken_further_often_and_on_other_threads(tmp_path, whole):
     small_run(tmp_path / "run", 10, frames=37)
     for steps, threads in ((74, 2), (75, 1), (129, 3), (400, 1), (STEPS, 2)):

@@ -12,6 +12,7 @@ from sweep_case import planned, sweep_file
 from typer.testing import CliRunner
 from worlds import QUICK
 
+from hedon import RunPlan, load_config, run
 from hedon.analysis.world.record import read_worlds
 from hedon.cli.main import app
 from hedon.compare.contrast import compare
@@ -277,13 +278,10 @@ def compared(folder: Path, *words: str) -> dict[str, dict]:
 def two_runs(tmp_path_factory) -> Path:
     """A run of each cost, the second half as long again, with two seeds in common."""
     folder = tmp_path_factory.mktemp("runs")
-    for name, cost, seeds, steps in (("cheap", 0.001, "1-3", 1024), ("dear", 0.004, "2-4", 1536)):
-        words = ["baseline", *QUICK_WORDS, "--set", f"energy.basic_cost={cost}"]
-        call("run", *words, "--seeds", seeds, "--steps", str(steps), "--out", str(folder / name))
+    for name, cost, seeds, steps in (("cheap", 0.001, (1, 2, 3), 1024), ("dear", 0.004, (2, 3, 4), 1536)):
+        config = load_config("baseline", overrides=[*QUICK, f"energy.basic_cost={cost}"])
+        run(RunPlan(config, seeds=seeds, steps=steps, out=folder / name))
     return folder
-
-
-QUICK_WORDS = [word for each in QUICK for word in ("--set", each)]
 
 
 def test_two_runs_are_compared_at_their_common_length(two_runs, tmp_path):

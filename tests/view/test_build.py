@@ -11,6 +11,8 @@ from project_files import ROOT
 
 from hedon.view.page import STATIC, page_files
 
+pytestmark = pytest.mark.smoke
+
 WEB = ROOT / "web"
 MODULES = ("hedon.wasm", "hedon-relaxed.wasm")
 

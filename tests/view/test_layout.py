@@ -12,6 +12,8 @@ from hedon.view.engine_text import engine_text
 from hedon.view.layout import describe
 from hedon.view.live import live_world
 
+pytestmark = pytest.mark.smoke
+
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_the_layout_names_everything_that_records_and_senses_have(preset):

@@ -167,6 +167,7 @@ def test_with_reduced_motion_nothing_moves_by_itself(server, browser):
     assert watched.faults == []
 
 
+@pytest.mark.smoke
 def test_the_article_goes_into_a_folder_for_any_server(tmp_path, watch):
     done = command("view", "--story", "--export", str(tmp_path / "site"))
     assert "open its story.html" in done.stdout

@@ -56,6 +56,7 @@ def flip(path: Path, at: int | None = None) -> None:
     path.write_bytes(data)
 
 
+@pytest.mark.smoke
 def test_an_untouched_run_passes(whole: Path) -> None:
     assert check_run(whole).findings == ()
     assert replay_run(whole)[0] == ()

@@ -69,6 +69,7 @@ def test_a_report_that_cannot_be_written_says_so(tmp_path: Path) -> None:
         write_report(open_run(folder))
 
 
+@pytest.mark.smoke
 def test_a_report_reads_each_file_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = write_run(tmp_path / "run", intervals=2, worlds=3)
     read: Counter[str] = Counter()
