@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from markdown_it import MarkdownIt
+from markupsafe import Markup
 
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import Conditions, WorldRecord
@@ -97,7 +99,13 @@ def render(template: str, context: Mapping[str, Any]) -> str:
         keep_trailing_newline=True,
     )
     environment.filters["verbatim"] = Markdown
+    environment.filters["prose"] = _html_prose if is_html else Markdown
     return environment.get_template(template).render(context)
+
+
+def _html_prose(text: str) -> Markup:
+    """Markdown that a study's author wrote, as HTML; HTML within it stays text."""
+    return Markup(MarkdownIt("commonmark", {"html": False}).renderInline(text))
 
 
 def _markdown(value: Any) -> str:

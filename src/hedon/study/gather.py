@@ -1,13 +1,14 @@
 """From run folders to what items are made from: the wanted worlds, as far as they are there."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import polars as pl
 
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import digest
+from hedon.config.layout import choose_species
 from hedon.jobs.requirement import RunRequirement, find_runs, read_required
 from hedon.record.error import RecordError
 from hedon.record.reader import Run
@@ -63,14 +64,29 @@ class Gathered:
         return ItemInputs(fidelity, {label: group for label, group in worlds.items() if group}, snapshots, frames)
 
     def demanded(self) -> list[WorldRecord]:
-        """Every world once, as long as the most demanding item asks for."""
+        """Every world once, as long as the most demanding item asks for, named by the label of its condition."""
+        labels = self._labels()
         return [
-            self.worlds[need.digest, seed, species].until(steps)
+            replace(self.worlds[need.digest, seed, species].until(steps), condition=labels[need.digest, species])
             for need in needs(self.request)
             for seed, steps in need.steps.items()
             for species in need.config.species
             if (need.digest, seed, species) in self.worlds
         ]
+
+    def _labels(self) -> dict[tuple[str, str], str]:
+        """The label of each setting and species, from the first item that shows it, unlike all others."""
+        found: dict[tuple[str, str], str] = {}
+        pairs = [(item, condition) for item in self.request.items for condition in item.conditions]
+        for is_shown in (True, False):
+            for item, condition in pairs:
+                config = condition.config(self.request.fidelity)
+                own = choose_species(condition.species or None, config)
+                for species in [own] if is_shown else config.species:
+                    label = condition.label if species == own else f"{condition.label}: {species}"
+                    label = f"{item.name}: {label}" if label in found.values() else label
+                    found.setdefault((digest(config), species), label)
+        return found
 
 
 def gather(request: Request, folder: Path) -> Gathered:
