@@ -1,6 +1,7 @@
 """`hedon assay` as a user calls it: a known sign, an interruption, starts, and each bad input."""
 
 import json
+import os
 import re
 import shutil
 import signal
@@ -54,8 +55,35 @@ def effects(path: Path) -> dict[tuple[str, str], dict]:
     return {(row["fitness"], row["gene"]): row for row in rows}
 
 
+def worlds(path: Path) -> list[dict]:
+    return json.loads((path / "landscape.json").read_text(encoding="utf-8"))["tables"]["world"]["rows"]
+
+
+def test_parts_on_several_machines_make_the_same_worlds(folder: Path) -> None:
+    words = ("landscape", "baseline", *BRIEF, "--out", "parts")
+    for part in ("1/2", "2/2"):
+        answer = call(folder, *words, "--part", part)
+        assert answer.returncode == 0, answer.stderr
+        assert "the same command without --part answers" in answer.stdout
+    assert not (folder / "parts" / "landscape.json").exists()
+    answer = call(folder, *words)
+    assert "to make" not in answer.stdout
+    assert worlds(folder / "parts") == worlds(folder / "whole")
+
+
+def test_a_script_for_slurm_has_a_task_for_each_world_at_most(folder: Path) -> None:
+    words = ("landscape", "baseline", *BRIEF, "--out", "an array")
+    answer = call(folder, *words, "--slurm", "--jobs", "9", "--hours=2")
+    assert "Next: sbatch 'an array.sh'" in answer.stdout
+    assert "#SBATCH --array=1-2\n" in (folder / "an array.sh").read_text(encoding="utf-8")
+    for task in ("1", "2"):
+        environment = os.environ | {"SLURM_ARRAY_TASK_ID": task}
+        subprocess.run(["sh", "an array.sh"], cwd=folder, env=environment, check=True, capture_output=True)
+    assert "to make" not in call(folder, *words).stdout
+    assert worlds(folder / "an array") == worlds(folder / "whole")
+
+
 @pytest.mark.long
-@pytest.mark.smoke
 def test_where_motion_kills_its_reward_is_selected_against(folder: Path) -> None:
     assert call(folder, "landscape", "baseline", *SHORT, "--out", "costly").returncode == 0
     found = effects(folder / "costly" / "landscape.json")

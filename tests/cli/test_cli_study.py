@@ -113,12 +113,12 @@ def test_parts_on_several_machines_make_all_worlds_and_the_script_calls_them(tmp
         assert answer.returncode == 0, answer.stderr
     assert not (tmp_path / "studies").exists(), "a report is made of all parts"
     assert "0 runs to make" in call(tmp_path, "run", *words).stdout
-    answer = call(tmp_path, "script", *words, "--slurm", "--jobs", "9", "--runs", "shared runs")
+    answer = call(tmp_path, "run", *words, "--slurm", "--jobs", "9", "--runs", "shared runs")
     assert answer.returncode == 0, answer.stderr
     script = (tmp_path / f"{NAME}.sh").read_text(encoding="utf-8")
     assert "#SBATCH --array=1-2\n" in script, "no more tasks than worlds"
-    assert "study run weights-baseline --seeds 1-2 --steps 64 --fidelity corrected --threads 1" in script
-    assert f"--runs '{tmp_path}/shared runs' --part \"$SLURM_ARRAY_TASK_ID/2\"" in script
+    assert f"study run weights-baseline --fidelity corrected --threads 1 --runs '{tmp_path}/shared runs'" in script
+    assert '--seeds 1,2 --steps 64 --part "$SLURM_ARRAY_TASK_ID/2"' in script
 
 
 def test_the_word_of_before_names_the_new_one(tmp_path: Path) -> None:
@@ -139,8 +139,8 @@ def test_the_word_of_before_names_the_new_one(tmp_path: Path) -> None:
         (("run", "hazard", "--out", "/proc/none"), "cannot write /proc/none"),
         (("report", "hazard", "--out", "/proc/none"), "cannot write /proc/none"),
         (("run", "weights-poor", "--seeds", "5-1"), "seeds: '5-1' is not a range of seeds"),
-        (("script", "fear"), "say for which system: --slurm is the only one"),
-        (("script", "hazard", "--slurm"), "these items need no worlds"),
+        (("run", "fear", "--slurm", "--part", "1/2"), "--slurm: its tasks are parts of the work"),
+        (("run", "hazard", "--slurm"), "--slurm: no worlds are needed"),
         (("run", "fear", "--part", "3/2"), "--part = '3/2': must be I/N"),
         (("run", "weights-poor", "--quick", "--steps", "9"), "--quick: has seeds and steps of its own"),
     ],

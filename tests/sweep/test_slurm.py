@@ -132,7 +132,7 @@ def file_of(folder: Path) -> Path:
 def begin(cluster: Path, folder: Path) -> tuple[Path, Path]:
     """Submits the script of two tasks that make a sweep; the script and the sweep's folder, when both are under way."""
     place = folder / "shared place"
-    words = ["sweep", "script", str(file_of(folder)), "--slurm", "--out", str(place), "--jobs", "2", "--hours", "1"]
+    words = ["sweep", "run", str(file_of(folder)), "--slurm", "--out", str(place), "--jobs", "2", "--hours", "1"]
     done = CliRunner().invoke(app, [*words, "--checkpoint", "0"])
     assert done.exit_code == 0, done.output
     script = place.with_name(f"{place.name}.sh")

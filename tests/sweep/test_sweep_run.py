@@ -14,11 +14,11 @@ from sweep_case import FACTORS, assert_same_table, planned, run_sweep, sweep_fil
 from typer.testing import CliRunner
 
 from hedon import RunPlan, load_config, run
+from hedon.cli.cluster import ClusterError
 from hedon.cli.main import app
 from hedon.error import HedonError
 from hedon.jobs.part import parse_part
 from hedon.jobs.store import Store
-from hedon.sweep.error import SweepError
 from hedon.sweep.plan import load_plan
 from hedon.sweep.read import read_sweep
 from hedon.sweep.run import open_batches
@@ -229,11 +229,11 @@ def said(*words: str) -> str:
 
 def test_a_script_for_slurm_has_a_task_for_each_batch_at_most(tmp_path):
     place = tmp_path / "a sweep"
-    words = ["sweep", "script", str(sweep_file(tmp_path)), "--out", str(place)]
-    refused = CliRunner().invoke(app, words)
-    assert isinstance(refused.exception, SweepError)
-    assert "say for which system" in str(refused.exception)
-    done = CliRunner().invoke(app, [*words, "--slurm", "--jobs", "100", "--workers", "3", "--hours", "2"])
+    words = ["sweep", "run", str(sweep_file(tmp_path)), "--slurm", "--out", str(place)]
+    refused = CliRunner().invoke(app, [*words, "--ray", "local"])
+    assert isinstance(refused.exception, ClusterError)
+    assert "leave out --ray and --part" in str(refused.exception)
+    done = CliRunner().invoke(app, [*words, "--jobs", "100", "--workers", "3", "--hours", "2"])
     assert done.exit_code == 0, done.output
     text = (tmp_path / "a sweep.sh").read_text()
     assert "#SBATCH --array=1-2\n#SBATCH --cpus-per-task=3\n#SBATCH --time=2:00:00\n" in text

@@ -1,5 +1,6 @@
 """What the commands of `hedon assay` share: their options, and how runs are made and answers shown."""
 
+import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hedon.cli.cluster import ClusterOptions, own_words
 from hedon.cli.console import make_console
 from hedon.cli.make import make_runs, require_finished, tell_left_out
 from hedon.cli.run import Checkpoint, Threads
@@ -32,9 +34,7 @@ Species = Annotated[
 
 
 @dataclass(frozen=True)
-class AssayOptions:
-    """The options of every assay."""
-
+class _Worlds:
     seeds: Seeds = "1-10"
     steps: Annotated[int, typer.Option(help="Steps of each world.", min=1, max=MAX_STEPS)] = STEPS
     fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or as_printed.")] = None
@@ -46,6 +46,11 @@ class AssayOptions:
     ] = None
     threads: Threads = 0
     checkpoint: Checkpoint = CHECKPOINT_SECONDS
+
+
+@dataclass(frozen=True)
+class AssayOptions(ClusterOptions, _Worlds):
+    """The options of every assay: its worlds, then where they are run."""
 
     def config(self, source: str) -> "Config":
         """The condition with its changes. ConfigError: it cannot be used."""
@@ -82,24 +87,37 @@ class AssayOptions:
         from hedon.assay.option import assay_folder
         from hedon.assay.sample import read_samples
         from hedon.cli.display.analysis import analysis_group
+        from hedon.jobs.part import parse_part
         from hedon.jobs.plan import plan_jobs
-        from hedon.jobs.requirement import find_runs
+        from hedon.jobs.requirement import find_runs, part_of
         from hedon.report.answer import write_answer
 
         console, folder = make_console(), self.out or assay_folder(kind, wanted[0])
-        found, faults = find_runs(folder, wanted)
+        if self.ray is not None or self.slurm:
+            folder = folder.absolute()  # other machines have another current folder
+        if self.slurm:
+            words = [*own_words("--jobs", "--hours", "--out"), "--out", str(folder)]
+            worlds = sum(len(need.steps) for need in wanted)
+            path = self.write_script(Path(f"{folder.name}.sh"), kind, words, worlds, self.threads or 1)
+            console.print(f"wrote {path}. Next: sbatch {shlex.quote(str(path))}", soft_wrap=True)
+            return
+        asked = part_of(wanted, parse_part(self.part))
+        found, faults = find_runs(folder, asked)
         tell_left_out(faults)
-        jobs = plan_jobs(wanted, found, folder, self.checkpoint)
+        jobs = plan_jobs(asked, found, folder, self.checkpoint)
         if jobs:
             config = wanted[0].config
-            worlds, runs = count(sum(len(need.steps) for need in wanted), "world"), count(len(jobs), "run")
+            worlds, runs = count(sum(len(need.steps) for need in asked), "world"), count(len(jobs), "run")
             steps = sum(job.world_steps for job in jobs)
             console.print(
                 f"hedon: {kind}, {config.name} ({config.fidelity}), {worlds} of {self.steps:,} steps: {runs} to make, "
                 f"{steps:,} world-steps",
                 soft_wrap=True,
             )
-        require_finished(jobs, make_runs(jobs, console, self.threads), console)
+        require_finished(jobs, make_runs(jobs, console, self.threads, self.ray), console)
+        if self.part is not None:
+            console.print("This part is done. When all are, the same command without --part answers.", soft_wrap=True)
+            return
         answer = ask(read_samples(wanted, folder))
         files = write_answer(folder, answer)
         console.print(analysis_group({table.name: table for table in answer.tables}))

@@ -5,9 +5,10 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
+from typer.core import TyperGroup
 
 from hedon.cli import assay, config, export, study, sweep
 from hedon.cli.analyze import analyze
@@ -41,6 +42,8 @@ GONE = {
     ("diff",): "it is `hedon check RUN --against RUN` now",
     ("replay-fault",): "it is `hedon check RUN --fault` now",
     ("contrast",): "it is `hedon compare` now",
+    ("study", "script"): "it is `hedon study run NAME --slurm` now",
+    ("sweep", "script"): "it is `hedon sweep run FILE --slurm` now",
     ("video",): "it is `hedon export video` now",
 }
 """Commands that there were once, with what replaces them."""
@@ -48,31 +51,60 @@ GONE_OPTIONS = {("run", "--device"): "--backend", ("power", "--against"): "the s
 """Options of commands that have another name now."""
 
 
+GROUPS = {
+    "Run worlds": {
+        "run": "Run worlds, then write their report.",
+        "resume": "Continue a run as if it had never stopped.",
+        "branch": "Continue from a checkpoint with changed settings.",
+    },
+    "See what happened": {
+        "view": "Watch a run, or a live world, in the browser.",
+        "report": "Write one page of figures, tables and claims.",
+        "analyze": "Answer statistical questions about runs.",
+        "check": "Check that a run is complete and undamaged.",
+        "export": "Write the records of a run for other tools.",
+    },
+    "Many worlds": {
+        "sweep": "Vary settings and seeds.",
+        "compare": "Compare two conditions, from any source.",
+        "power": "Find out how many worlds show an effect.",
+        "assay": "Measure fitness directly.",
+        "study": "Answer a question: conditions, figures, claims.",
+    },
+    "Settings": {
+        "presets": "List the presets.",
+        "config": "Show, compare and check configs.",
+        "forecast": "Predict from settings whether a world survives.",
+    },
+}
+"""The commands as the help lists them."""
+
+
+class Grouped(TyperGroup):
+    """Commands whose help lists them by group."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Writes the list of commands."""
+        del ctx
+        for title, commands in GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl(list(commands.items()))
+
+
 app = typer.Typer(
     name="hedon",
+    cls=Grouped,
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-# One file per command or group of commands. The help lists them in this order.
-app.command()(run)
-app.command()(resume)
-app.command()(branch)
-app.command()(view)
-app.command()(report)
-app.command()(analyze)
-app.command()(compare)
-app.command()(power)
-app.command()(forecast)
-app.command()(check)
-app.command()(config.presets)
-app.add_typer(export.app, name="export")
-app.add_typer(assay.app, name="assay")
-app.add_typer(sweep.app, name="sweep")
-app.add_typer(study.app, name="study")
-app.add_typer(config.app, name="config")
+# One file per command or group of commands.
+for command in (run, resume, branch, view, report, analyze, compare, power, forecast, check, config.presets):
+    app.command()(command)
+for group in (export, assay, sweep, study, config):
+    app.add_typer(group.app, name=group.__name__.rpartition(".")[2])
 
 
 def _print_version(asked: bool) -> None:
@@ -94,17 +126,9 @@ def _hedon(
 
     \b
     Examples:
-      hedon run baseline
       hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
-      hedon resume runs/poison --steps 2048000
       hedon view --live
-      hedon report runs/poison
-      hedon analyze runs/poison --only selection,drift
-      hedon study list
-      hedon assay landscape baseline
-      hedon sweep run cost.toml
-      hedon presets
-      hedon config show baseline --set food.normal.growth_rate=0.5
+      hedon compare runs/poison runs/baseline
     """
 
 

@@ -23,12 +23,6 @@ DEFAULT_STEPS = 204_800
 _BACKENDS = (*INSTRUCTION_SETS, *DEVICES)
 """All values of `--backend`."""
 
-Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th part of the work, from the I-th on.")]
-Slurm = Annotated[bool, typer.Option("--slurm", help="For Slurm: a job array.")]
-Hours = Annotated[int, typer.Option(help="Hours that a task may take.", min=1, max=10_000)]
-Ray = Annotated[
-    str | None, typer.Option(metavar="ADDRESS|local", help="Run on this Ray cluster, or on one started here.")
-]
 Threads = Annotated[int, typer.Option(help="Threads; 0 for all processors. Changes no result.", min=0, max=1024)]
 Checkpoint = Annotated[float, typer.Option(help="Seconds between two checkpoints; 0 for every window.", min=0.0)]
 Report = Annotated[bool, typer.Option(help="Write a report at the end; `hedon report` writes it at any time.")]

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hedon.cli.cluster import ClusterOptions
 from hedon.cli.console import make_console
 from hedon.cli.make import make_runs, require_finished, tell_left_out
-from hedon.cli.run import Hours, Part, Ray, Slurm, Threads
+from hedon.cli.option import with_options
+from hedon.cli.run import Threads
 from hedon.error import HedonError
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.text import count
@@ -99,6 +101,7 @@ def plan(
 
 
 @app.command()
+@with_options(ClusterOptions)
 def run(
     names: Names,
     seeds: Seeds = None,
@@ -106,72 +109,31 @@ def run(
     fidelity: FidelityName = "corrected",
     quick: Quick = False,
     threads: Threads = 0,
-    ray: Ray = None,
-    part: Part = None,
     runs: Runs = Path("runs"),
     out: Out = None,
+    *,
+    options: ClusterOptions,
 ) -> None:
     """Make the runs that are missing, then the report.
 
     Existing runs are used, also longer ones and those of `hedon run`; runs that are too short are continued. Worlds
     that die out count and are never replaced. Ctrl-C ends all runs after their current windows, a second one
     immediately; the same command continues. At the scale of a paper this takes days: ask `hedon study plan` first.
-    With --part, it makes some of the worlds and no report: several machines share the folder of the runs.
+    With --part, it makes some of the worlds and no report: several machines share the folder of the runs. With --slurm,
+    it writes a job array that does so; afterwards, `hedon study report` reads the runs.
 
     \b
     Examples:
       hedon study run hazard birth walk body parameters
       hedon study run weights-baseline --seeds 1-2 --steps 1024000
       hedon study run fear --quick
+      hedon study run fear --runs /shared/runs --slurm --jobs 100
     """
     studies, request = _request(names, seeds, steps, fidelity, quick=quick)
-    _make(studies, request, runs, out or _folder(studies), threads, ray, part, make_console())
-
-
-@app.command()
-def script(
-    names: Names,
-    slurm: Slurm = False,
-    seeds: Seeds = None,
-    steps: Steps = None,
-    fidelity: FidelityName = "corrected",
-    tasks: Annotated[int, typer.Option("--jobs", help="Tasks of the array.", min=1, max=100_000)] = 16,
-    threads: Annotated[int, typer.Option(help="Processors of each task.", min=1, max=1024)] = 1,
-    hours: Hours = 24,
-    runs: Runs = Path("runs"),
-) -> None:
-    """Write a script that makes the runs of studies on a cluster: NAME.sh. Afterwards, `hedon study report` reads them.
-
-    The folder of the runs must be one that all nodes share. A task that runs out of time saves where it is; submit the
-    script again to go on.
-
-    \b
-    Example:
-      hedon study script fear --slurm --runs /shared/runs --jobs 100
-    """
-    from hedon.jobs.slurm import slurm_script
-    from hedon.record.atomic import write_atomically
-    from hedon.study.request import needs
-
-    if not slurm:
-        raise RunsError("say for which system: --slurm is the only one")
-    studies, request = _request(names, seeds, steps, fidelity)
-    worlds = sum(len(need.steps) for need in needs(request))
-    if not worlds:
-        raise RunsError("these items need no worlds: `hedon study run` makes them")
-    asked = {
-        "--seeds": seeds,
-        "--steps": steps,
-        "--fidelity": fidelity,
-        "--threads": threads,
-        "--runs": runs.absolute(),
-    }
-    options = [str(word) for pair in asked.items() if pair[1] is not None for word in pair]
-    name = studies[0].name if len(studies) == 1 else "studies"
-    path = Path(f"{name}.sh")
-    text = slurm_script(name, ["study", "run", *names, *options], min(tasks, worlds), threads, hours).encode()
-    write_atomically(path, lambda content: content.write(text))
-    make_console().print(f"wrote {path}. Next: sbatch {path}", soft_wrap=True)
+    if options.slurm:
+        _script(studies, request, names, threads or 1, runs, options)
+    else:
+        _make(studies, request, runs, out or _folder(studies), threads, options.ray, options.part, make_console())
 
 
 @app.command()
@@ -214,6 +176,27 @@ def _request(
     items = tuple(item for study in studies for item in study.items)
     own = QUICK if quick else (parse_seeds(seeds, "--seeds") if seeds is not None else None, steps)
     return studies, Request(items, fidelity, *own)
+
+
+def _script(
+    studies: "Sequence[Study]",
+    request: "Request",
+    names: "Sequence[str]",
+    threads: int,
+    runs: Path,
+    options: ClusterOptions,
+) -> None:
+    """Writes the script of a job array. The folder of the runs must be one that all nodes share."""
+    from hedon.study.request import needs
+
+    name = studies[0].name if len(studies) == 1 else "studies"
+    asked = {"--fidelity": request.fidelity, "--threads": str(threads), "--runs": str(runs.absolute())}
+    asked |= {} if request.seeds is None else {"--seeds": ",".join(map(str, request.seeds))}
+    asked |= {} if request.steps is None else {"--steps": str(request.steps)}
+    words = ["study", "run", *names, *(word for pair in asked.items() for word in pair)]
+    worlds = sum(len(need.steps) for need in needs(request))
+    path = options.write_script(Path(f"{name}.sh"), name, words, worlds, threads)
+    make_console().print(f"wrote {path}. Next: sbatch {path}", soft_wrap=True)
 
 
 def _folder(studies: "Sequence[Study]") -> Path:

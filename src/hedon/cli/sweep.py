@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hedon.cli.cluster import ClusterOptions
 from hedon.cli.console import make_console
 from hedon.cli.make import make_runs, require_finished
-from hedon.cli.run import Checkpoint, Hours, Part, Ray, Slurm
+from hedon.cli.option import with_options
+from hedon.cli.run import Checkpoint
 from hedon.record.folder import CHECKPOINT_SECONDS
 from hedon.text import command_word, count, printable
 
@@ -60,14 +62,15 @@ def plan(file: File, skip_invalid: SkipInvalid = False) -> None:
 
 
 @app.command()
+@with_options(ClusterOptions)
 def run(
     file: File,
     out: Out = None,
     workers: Workers = 0,
-    ray: Ray = None,
-    part: Part = None,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
     skip_invalid: SkipInvalid = False,
+    *,
+    options: ClusterOptions,
 ) -> None:
     """Run a sweep, then print its table. The same command goes on with what is not finished.
 
@@ -79,17 +82,19 @@ def run(
     Examples:
       hedon sweep run cost.toml --workers 2
       hedon sweep run cost.toml --out s3://bucket/cost
+      hedon sweep run cost.toml --out /shared/cost --slurm --jobs 100
     """
-    _run_and_report(*_written(file, out, skip_invalid=skip_invalid), workers, ray, part, checkpoint)
+    _run_or_script(*_written(file, out, skip_invalid=skip_invalid), workers, checkpoint, options)
 
 
 @app.command()
+@with_options(ClusterOptions)
 def resume(
     place: Place,
     workers: Workers = 0,
-    ray: Ray = None,
-    part: Part = None,
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
+    *,
+    options: ClusterOptions,
 ) -> None:
     """Go on with a sweep from where it lives; its file is not needed.
 
@@ -97,7 +102,7 @@ def resume(
     Example:
       hedon sweep resume sweeps/cost --workers 2
     """
-    _run_and_report(*_opened(place), workers, ray, part, checkpoint)
+    _run_or_script(*_opened(place), workers, checkpoint, options)
 
 
 @app.command()
@@ -168,41 +173,6 @@ def report(
     make_console().print(f"wrote {files[0]} and {len(files) - 1} figures beside it", soft_wrap=True)
 
 
-@app.command()
-def script(
-    file: File,
-    slurm: Slurm = False,
-    out: Out = None,
-    jobs: Annotated[int, typer.Option("--jobs", help="Tasks of the array.", min=1, max=100_000)] = 16,
-    workers: Annotated[int, typer.Option(help="Processes of each task, one processor each.", min=1)] = 1,
-    hours: Hours = 24,
-    checkpoint: Checkpoint = CHECKPOINT_SECONDS,
-    skip_invalid: SkipInvalid = False,
-) -> None:
-    """Write a sweep, and a script that runs it on a cluster: FOLDER.sh.
-
-    The folder must be one that all nodes share, or a URL. A task that runs out of time saves where it is; submit the
-    script again to go on.
-
-    \b
-    Example:
-      hedon sweep script cost.toml --slurm --out /shared/cost --jobs 100
-    """
-    from hedon.jobs.slurm import slurm_script
-    from hedon.record.atomic import write_atomically
-    from hedon.sweep.error import SweepError
-
-    if not slurm:
-        raise SweepError("say for which system: --slurm is the only one")
-    made, store = _written(file, out, skip_invalid=skip_invalid)
-    path = Path(f"{made.name}.sh") if store.folder is None else store.folder.with_name(f"{store.folder.name}.sh")
-    place = store.location if store.folder is None else str(store.folder.absolute())
-    words = ["sweep", "resume", place, "--workers", str(workers), "--checkpoint", f"{checkpoint:g}"]
-    text = slurm_script(f"the sweep {made.name}", words, min(jobs, len(list(made.batches()))), workers, hours).encode()
-    write_atomically(path, lambda content: content.write(text))
-    make_console().print(f"wrote {path}. Next: sbatch {shlex.quote(str(path))}", soft_wrap=True)
-
-
 def _written(file: Path, out: str | None, *, skip_invalid: bool) -> "tuple[SweepPlan, Store]":
     """The plan of a file, written where the sweep lives."""
     from hedon.jobs.store import Store
@@ -236,6 +206,19 @@ def _say_size(made: "SweepPlan", console: "Console") -> None:
 def _say_left_out(asked: "SweepFile", console: "Console") -> None:
     for reason in asked.left_out:
         console.print(f"  left out: {printable(reason)}", soft_wrap=True)
+
+
+def _run_or_script(made: "SweepPlan", store: "Store", workers: int, checkpoint: float, options: ClusterOptions) -> None:
+    """Runs a sweep, or writes the script that does. Its folder must be one that all nodes share, or a URL."""
+    if not options.slurm:
+        _run_and_report(made, store, workers, options.ray, options.part, checkpoint)
+        return
+    path = Path(f"{made.name}.sh") if store.folder is None else store.folder.with_name(f"{store.folder.name}.sh")
+    place = store.location if store.folder is None else str(store.folder.absolute())
+    words = ["sweep", "resume", place, "--workers", str(workers or 1), "--checkpoint", f"{checkpoint:g}"]
+    batches = len(list(made.batches()))
+    options.write_script(path, f"the sweep {made.name}", words, batches, workers or 1)
+    make_console().print(f"wrote {path}. Next: sbatch {shlex.quote(str(path))}", soft_wrap=True)
 
 
 def _run_and_report(

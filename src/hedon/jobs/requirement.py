@@ -52,12 +52,20 @@ def part_of(requirements: Sequence[RunRequirement], part: tuple[int, int]) -> li
 
     Args:
         requirements: of all worlds.
-        part: number, from 1 on, and count of parts into which worlds are dealt out in turn.
+        part: number, from 1 on, and count of parts into which worlds are dealt out in turn. Folders of named runs have
+            the number in their names, so that machines do not meet in one.
     """
     number, count = part
+    if count == 1:
+        return list(requirements)
     worlds = [(need, seed) for need in requirements for seed in need.steps][number - 1 :: count]
     shares = [
-        replace(need, steps={seed: need.steps[seed] for of, seed in worlds if of is need}) for need in requirements
+        replace(
+            need,
+            steps={seed: need.steps[seed] for of, seed in worlds if of is need},
+            name=need.name and f"{need.name}-{number}",
+        )
+        for need in requirements
     ]
     return [share for share in shares if share.steps]
 
