@@ -2,18 +2,6 @@
 import type { App } from "./app";
 import { by } from "./element";
 
-export const KEYS: [string, string][] = [
-  ["Space", "plays and pauses"],
-  ["← →", "one step back, on; with Shift ten"],
-  ["Home End", "the first and the last step"],
-  ["+ −", "faster and slower"],
-  ["N", "chooses the next agent, Esc none"],
-  ["F R T", "follow the chosen agent, show its rays, its trail"],
-  ["0 X", "the whole arena, the full screen"],
-  ["A P S W", "the panels: agent, plots, settings, world"],
-  ["?", "this help"],
-];
-
 /** Whether what has the focus uses a key itself, as a list does arrows and a button the space bar. */
 function needs(target: HTMLElement, key: string): boolean {
   if (target.closest("dialog") || /^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName)) return true;

@@ -1,9 +1,20 @@
 // The help: keys, how to make the same world elsewhere, and what rounding has to do with it.
-import { KEYS } from "./control";
 import { by, counted, element, show, table } from "./element";
 import { Live } from "./live";
 import { command } from "./settings";
 import type { Source } from "./source";
+
+const KEYS: [string, string][] = [
+  ["Space", "plays and pauses"],
+  ["← →", "one step back, on; with Shift ten"],
+  ["Home End", "the first and the last step"],
+  ["+ −", "faster and slower"],
+  ["N", "chooses the next agent, Esc none"],
+  ["F R T", "follow the chosen agent, show its rays, its trail"],
+  ["0 X", "the whole arena, the full screen"],
+  ["A P S W", "the panels: agent, plots, settings, world"],
+  ["?", "this help"],
+];
 
 const TOUCH = "Click or tap an agent to choose it. Drag to move; turn the wheel or pinch to zoom.";
 
@@ -13,7 +24,7 @@ export function showHelp(source: Source): void {
   close.onclick = () => box.close();
   const heading = element("h2", { text: "Help" });
   heading.id = "help-title";
-  const keys = table(KEYS.map(([key, what]): [string, string] => [key, what]));
+  const keys = table(KEYS);
   box.replaceChildren(heading, element("p", { text: TOUCH }), element("h3", { text: "Keys" }), keys, ...thisWorld(source), close);
   box.showModal();
 }
