@@ -17,32 +17,18 @@ def printable(text: str) -> str:
 
 
 def brief(text: str, limit: int = LINE) -> str:
-    """The text, or its beginning and its length if it has more than `limit` characters.
-
-    Args:
-        text: what a user gave, of any length.
-        limit: characters that are shown.
-    """
+    """The text, or its beginning and its length if it has more than `limit` characters."""
     return text if len(text) <= limit else f"{text[:limit]}… ({len(text):,} characters)"
 
 
 def command_word(text: str) -> str:
-    """A path as one word of a command that a user copies.
-
-    Args:
-        text: The path. On Windows it has no double quotes, and its shells know no single ones.
-    """
+    """A path as one word of a command that a user copies."""
     if os.name != "nt":
         return shlex.quote(text)
     return text if re.fullmatch(r"[\w\\/:.-]+", text) else f'"{text}"'
 
 
 def count(number: int, noun: str) -> str:
-    """A number of things: "1 run", "2 runs".
-
-    Args:
-        number: How many.
-        noun: In the singular.
-    """
+    """A number of things: "1 run", "2 runs"."""
     ending = "" if number == 1 else "es" if noun.endswith("ch") else "s"
     return f"{number:,} {noun}{ending}"

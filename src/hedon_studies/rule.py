@@ -95,16 +95,7 @@ def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above:
 
 
 def count_test(name: str, count: int, worlds: int, extinct: int, chance: float, *, above: bool) -> Test:
-    """The share of worlds that have something, less the share that chance gives, with its interval.
-
-    Args:
-        name: of the claim.
-        count: worlds that have it.
-        worlds: all of them.
-        extinct: how many of the worlds died out.
-        chance: the share if the claim is wrong.
-        above: whether the claim holds above 0.
-    """
+    """The share of worlds that have something, less the share that chance gives, with its interval."""
     if not worlds:
         return Test(name, worlds, 0, extinct, above)
     low, high = share_interval(count, worlds)
@@ -113,15 +104,7 @@ def count_test(name: str, count: int, worlds: int, extinct: int, chance: float, 
 
 
 def verdict_table(name: str, tests: Sequence[Test], note: str = "", named: int = 0) -> ResultTable:
-    """The answers to all named tests of a study, which are corrected for each other.
-
-    Args:
-        name: of the table.
-        tests: that are answered here.
-        note: below the rule.
-        named: tests that the study names, if there are others than these; they count as if nothing had been found,
-            which is stricter than Holm's correction with their own p.
-    """
+    """The answers to all named tests of a study, which are corrected for each other."""
     others = [1.0] * (named - len(tests))
     corrected = holm([*(1.0 if np.isnan(test.p) else test.p for test in tests), *others])[: len(tests)]
     rows: list[Mapping[str, Any]] = [

@@ -50,14 +50,7 @@ def make_table(
 def over_worlds(
     rows: pl.DataFrame, by: Sequence[str], quantities: Mapping[str, str], within: Mapping[str, Range] | Range = ANY
 ) -> list[dict[str, Any]]:
-    """Means over worlds with Student's t intervals, a row for each group and quantity.
-
-    Args:
-        rows: one row per world and group; column `condition` is always grouped by.
-        by: further columns that tell groups apart.
-        quantities: column, and what it is called.
-        within: values that are possible, of all columns or by column.
-    """
+    """Means over worlds with Student's t intervals, a row for each group and quantity."""
     if rows.is_empty():
         return []
     results = []

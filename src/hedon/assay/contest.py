@@ -154,13 +154,7 @@ def world_lines(agents: pl.DataFrame, seed: int, member: Floats, steps: int) -> 
 
 
 def by_descent(agents: pl.DataFrame, first: Sequence[bool], first_id: int = 0) -> Floats:
-    """How far each agent belongs to the group of its founder: 0 or 1, (agents,).
-
-    Args:
-        agents: of one species of a world, by agent_id; each has one parent.
-        first: whether each founder of the species belongs to the first group, by agent_id.
-        first_id: the least agent_id of these founders.
-    """
+    """How far each agent belongs to the group of its founder: 0 or 1, (agents,)."""
     line = founder(genealogy(agents))
     return np.asarray(first, np.float64)[agents["agent_id"].to_numpy()[line] - first_id]
 
@@ -187,11 +181,6 @@ def by_gene(agents: pl.DataFrame, a: Mapping[str, float], b: Mapping[str, float]
 
 def sample_lines(sample: Sample, groups: tuple[str, str], species: str) -> list[Lines]:
     """The numbers of two groups in each world.
-
-    Args:
-        sample: worlds whose table of founders has the two groups.
-        groups: names of the first and the second.
-        species: whose groups they are.
 
     Raises:
         AssayError: There is no table of founders, or its groups cannot be told apart.
@@ -231,11 +220,6 @@ def estimate(groups: tuple[str, str], lines: Sequence[Lines], steps: int) -> Con
 
 def points_of(founders: Founders, groups: tuple[str, str], species: str) -> tuple[Point, Point]:
     """The genes of two groups that have one row each.
-
-    Args:
-        founders: the table.
-        groups: names of the first and the second.
-        species: whose genes.
 
     Raises:
         AssayError: A group has several rows, or lacks a gene of the other.

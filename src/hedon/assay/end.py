@@ -40,11 +40,6 @@ def read_ends(path: Path, config: Config, species: str) -> list[End]:
     Of studies with several conditions only the rows of the config's own condition count, if there are any; of a
     run with several species, the given one.
 
-    Args:
-        path: a run's folder, a `summary.json` or a `reproduction.json`.
-        config: of the assay.
-        species: the one of the ends.
-
     Raises:
         AssayError: There are none, or the file cannot be read.
         RecordError: A run cannot be read.
@@ -134,10 +129,5 @@ def _condition(row: Mapping[str, Any]) -> str:
 
 
 def on_surface(ends: Iterable[End], genes: Sequence[str]) -> list[tuple[End, tuple[float, float]]]:
-    """The ends that have both genes, with their points.
-
-    Args:
-        ends: mean weights at the ends of runs.
-        genes: columns of the two genes.
-    """
+    """The ends that have both genes, with their points."""
     return [(end, (end.weights[genes[0]], end.weights[genes[1]])) for end in ends if set(genes) <= end.weights.keys()]

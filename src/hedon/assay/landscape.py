@@ -108,12 +108,6 @@ def spread_founders(config: Config, spread: Spread, species: str, rows: int = RO
     """A table of genomes of one species spread over all its genes, independently; the same for the same arguments.
 
     Those of the other species are drawn from the laws in the config.
-
-    Args:
-        config: with the genes and their limits.
-        spread: the law that all genes are drawn from; values beyond a gene's limit are clipped.
-        species: whose genes.
-        rows: genomes in the table.
     """
     prefix = f"{species}." if len(config.species) > 1 else ""
     columns = [prefix + name for name in layouts(config)[species].gene_names]
@@ -140,11 +134,6 @@ def _read_outcomes(worlds: Sequence[WorldRecord]) -> pl.DataFrame:
 
 def measure_landscape(sample: Sample, genes: tuple[str, str], species: str | None = None) -> Landscape:
     """Fits the surfaces to finished worlds.
-
-    Args:
-        sample: the worlds.
-        genes: the two columns of the surface.
-        species: whose; None for all, where there is only one.
 
     Raises:
         AssayError: all worlds died out before anything could be measured.

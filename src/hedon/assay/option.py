@@ -20,11 +20,6 @@ from hedon.text import brief
 def choose_genes(text: str | None, config: Config, species: str | None = None) -> tuple[str, str]:
     """The columns of two genes of a species from a text such as "food,action", which is also the default.
 
-    Args:
-        text: two names with a comma between them; None for the default.
-        config: that has the genes.
-        species: by default the first.
-
     Raises:
         AssayError: They are not two genes of the config.
     """
@@ -42,11 +37,6 @@ def choose_genes(text: str | None, config: Config, species: str | None = None) -
 
 def parse_spread(text: str, sd: float | None, genome: GenomeConfig) -> Spread:
     """How founders are spread, from a range such as "-8:8", or normally if `sd` is given.
-
-    Args:
-        text: LOW:HIGH.
-        sd: standard deviation of a normal law around 0, which then holds instead of the range; or None.
-        genome: with the limit of weights.
 
     Raises:
         AssayError: It is not a range within the weight limit, or the standard deviation is not above 0.
@@ -84,12 +74,7 @@ def assay_worlds(
 
 
 def assay_folder(kind: str, first: RunRequirement) -> Path:
-    """The folder of an assay: more seeds and more steps of the same setting find what is there.
-
-    Args:
-        kind: of the assay.
-        first: of the worlds that it needs.
-    """
+    """The folder of an assay: more seeds and more steps of the same setting find what is there."""
     return Path("assays") / f"{kind}-{first.config.name}-{first.config.fidelity}-{first.digest[:8]}"
 
 
@@ -97,12 +82,6 @@ def competitors(
     sources: Sequence[str], shares: Sequence[float], config: Config, species: str
 ) -> tuple[Founders, tuple[str, str]]:
     """Founders from two sources, and the names of their groups.
-
-    Args:
-        sources: two, each as `hedon run --founders` takes it.
-        shares: of both among the founders.
-        config: of the world that they compete in.
-        species: which competes with itself; others are drawn from the config's laws.
 
     Raises:
         AssayError: A source has no gene of the species, or its groups could not be told apart.
@@ -142,11 +121,6 @@ def _source(source: str, config: Config, species: str) -> Founders:
 def parse_shares(text: str, config: Config, species: str) -> tuple[float, ...]:
     """The shares of a group among the founders, in ascending order, from a text such as "0.05,0.5,0.95".
 
-    Args:
-        text: shares with commas between them.
-        config: of the world.
-        species: whose founders.
-
     Raises:
         AssayError: There are not two different shares, or one leaves a group without founders.
     """
@@ -169,12 +143,6 @@ def parse_shares(text: str, config: Config, species: str) -> tuple[float, ...]:
 def knocked_out(source: str, gene: str, config: Config, species: str) -> tuple[Founders, tuple[str, str]]:
     """The living of a run with one gene set to 0, against themselves, and the names of both groups.
 
-    Args:
-        source: the living of a run, RUN or RUN@STEP.
-        gene: its column, its kind of food, or `action`.
-        config: of the world that they compete in.
-        species: whose gene it is.
-
     Raises:
         AssayError: The run has no such gene, or the groups could not be told apart.
         FounderError: Nobody lived then.
@@ -189,12 +157,7 @@ def knocked_out(source: str, gene: str, config: Config, species: str) -> tuple[F
 
 
 def condition_of(given: str | None, sources: Sequence[str]) -> str:
-    """The preset or file that an assay takes place in: the given one, else that of the first run, else baseline.
-
-    Args:
-        given: a preset or a file; None if the user gave none.
-        sources: of the founders; some may be runs.
-    """
+    """The preset or file that an assay takes place in: the given one, else that of the first run, else baseline."""
     if given is not None:
         return given
     folders = [Path(source.rpartition("@")[0] or source) for source in sources]
@@ -204,10 +167,6 @@ def condition_of(given: str | None, sources: Sequence[str]) -> str:
 
 def stability_config(config: Config, point: Mapping[str, float]) -> Config:
     """A config whose founders begin around a point, with mutation as it is and the assay's neutral markers.
-
-    Args:
-        config: of the condition.
-        point: means of the founders' genes, by column; other genes keep theirs.
 
     Raises:
         AssayError: The point has a neutral marker, or drift cannot be told: with several species, whose genes `--at`

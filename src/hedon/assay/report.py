@@ -21,17 +21,7 @@ def assay_answer(
     figure: Figure,
     files: Mapping[str, str] | None = None,
 ) -> Answer:
-    """What an assay found, with its worlds.
-
-    Args:
-        kind: of the assay; names the files.
-        samples: the worlds that it was read from.
-        content: what the summary holds besides its head and the tables.
-        tables: for the terminal, the summary and the page.
-        intro: first lines of the page, in Markdown.
-        figure: its picture.
-        files: further files, by name.
-    """
+    """What an assay found, with its worlds."""
     config = samples[0].need.config
     head = {
         "assay": kind,
@@ -57,11 +47,7 @@ def assay_answer(
 
 
 def world_table(rows: Sequence[Mapping[str, Any]]) -> ResultTable:
-    """What was found in each world by itself, for `hedon compare` and `hedon power`.
-
-    Args:
-        rows: a row per world, with its seed.
-    """
+    """What was found in each world by itself, for `hedon compare` and `hedon power`."""
     return make_table(WORLDS, "Each world by itself", rows, shown=False)
 
 
@@ -71,10 +57,5 @@ def world_line(samples: Sequence[Sample]) -> str:
 
 
 def estimate_row(labels: Mapping[str, Any], estimate: Estimate) -> dict[str, Any]:
-    """A row with a value and its interval.
-
-    Args:
-        labels: the first columns.
-        estimate: value, low and high.
-    """
+    """A row with a value and its interval."""
     return {**labels, "value": estimate.value, "low": estimate.low, "high": estimate.high}

@@ -18,12 +18,6 @@ _SHOWN_TIMES = 10
 def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Sequence[Sample]) -> Answer:
     """What finished worlds of two groups tell.
 
-    Args:
-        kind: of the assay.
-        groups: names of the first and the second.
-        species: whose groups they are.
-        samples: one; its table of founders has the two groups.
-
     Raises:
         AssayError: There is no table of founders, or its groups cannot be told apart.
     """

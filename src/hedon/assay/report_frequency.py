@@ -22,12 +22,6 @@ def frequency_answer(
 ) -> Answer:
     """What finished worlds of two groups tell, one sample for each share of the first.
 
-    Args:
-        groups: names of the first and the second.
-        species: whose groups they are.
-        shares: of the first among the founders of each sample.
-        samples: of the assay; their tables of founders have the two groups.
-
     Raises:
         AssayError: There is no table of founders, or its groups cannot be told apart.
     """

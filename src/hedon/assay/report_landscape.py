@@ -21,12 +21,6 @@ OUTCOMES = "founders-outcome.csv"
 def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], samples: Sequence[Sample]) -> Answer:
     """What finished worlds of spread founders tell: the surfaces, each gene by itself, fitness at the ends of runs.
 
-    Args:
-        genes: the two columns of the surface.
-        species: whose.
-        ends: mean weights at the ends of runs.
-        samples: one, of the assay.
-
     Raises:
         AssayError: all worlds died out before anything could be measured.
     """

@@ -16,12 +16,7 @@ _COLORS = (BLUE, ORANGE)
 
 
 def stability_answer(points: Sequence[str], samples: Sequence[Sample]) -> Answer:
-    """What finished worlds tell of the points at which they began.
-
-    Args:
-        points: of the samples, as the user gave them.
-        samples: of the assay.
-    """
+    """What finished worlds tell of the points at which they began."""
     starts = judge([measure_stability(sample) for sample in samples])
     content = [
         {

@@ -20,13 +20,7 @@ Ints = NDArray[np.int64]
 
 
 def world_draws(worlds: int, rng: np.random.Generator, replicates: int = REPLICATES) -> Floats:
-    """How often each world is drawn in each bootstrap sample, (replicates, worlds).
-
-    Args:
-        worlds: how many there are, and are drawn.
-        rng: source of chance.
-        replicates: bootstrap samples.
-    """
+    """How often each world is drawn in each bootstrap sample, (replicates, worlds)."""
     return rng.multinomial(worlds, np.full(worlds, 1.0 / worlds), replicates).astype(np.float64)
 
 
@@ -156,11 +150,6 @@ def permuted(values: Floats, world: Ints, rng: np.random.Generator, times: int =
 
 
 def chance(observed: Floats, null: Floats) -> Floats:
-    """Two-sided chance of a value at least this far from 0 under the null.
-
-    Args:
-        observed: (…,).
-        null: draws under the null, (…, times).
-    """
+    """Two-sided chance of a value at least this far from 0 under the null."""
     beyond = (np.abs(null) >= np.abs(observed)[..., None] * (1 - 1e-12)).sum(axis=-1)
     return (1.0 + beyond) / (1.0 + null.shape[-1])

@@ -47,10 +47,6 @@ class Sample:
 def read_samples(wanted: Sequence[RunRequirement], folder: Path) -> list[Sample]:
     """Reads the worlds of an assay whose runs are there.
 
-    Args:
-        wanted: one entry for each setting.
-        folder: of the assay.
-
     Raises:
         RecordError: a run cannot be read.
     """

@@ -146,11 +146,7 @@ def _known(scores: Sequence[float]) -> Floats:
 
 
 def judge(starts: Sequence[Stability]) -> list[Stability]:
-    """The same starts with verdicts, corrected by Holm: both tests of every reward gene and start are one family.
-
-    Args:
-        starts: All of an assay.
-    """
+    """The same starts with verdicts, corrected by Holm: both tests of every reward gene and start are one family."""
     reward = [(start.name, name) for start in starts for name in start.point]
     courses = {(start.name, name): course for start in starts for name, course in start.courses.items()}
     corrected = _corrected([courses[key] for key in reward])

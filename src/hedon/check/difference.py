@@ -68,10 +68,6 @@ class Difference:
 def compare_runs(a: Path, b: Path) -> Difference:
     """Compares two runs, finished or not.
 
-    Args:
-        a: folder of the first.
-        b: folder of the second.
-
     Raises:
         RecordError: one is not a run, or cannot be read.
         ConfigError: the config of one cannot be read.

@@ -38,15 +38,7 @@ class CheckResult:
 
 
 def break_rules(rows: pl.DataFrame, table: str, keys: Sequence[str], rules: Mapping[str, pl.Expr]) -> Iterator[Finding]:
-    """One finding for each rule that some rows break.
-
-    Args:
-        rows: With the columns that the rules use.
-        table: Its name in findings.
-        keys: Columns that identify a row.
-        rules: Texts that say what is wrong with a row, each with an expression that is true for such rows; null
-            counts as false.
-    """
+    """One finding for each rule that some rows break."""
     for what, wrong in rules.items():
         found = rows.filter(wrong)
         if found.height:

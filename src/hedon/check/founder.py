@@ -17,14 +17,7 @@ from hedon.record.manifest import Manifest
 def check_founders(
     folder: Path, config: Config | None, manifest: Manifest | None, agents: pl.DataFrame | None
 ) -> Iterator[Finding]:
-    """What is wrong with the table of founders, and with the founders among the agents.
-
-    Args:
-        folder: Of the run.
-        config: Of the run; None if it cannot be read, as all that follow. Then less is checked.
-        manifest: Of the run.
-        agents: The table, as far as it can be read.
-    """
+    """What is wrong with the table of founders, and with the founders among the agents."""
     if config is None:
         return
     try:

@@ -15,14 +15,7 @@ _KEYS = ("world", "agent_id")
 def check_agents(
     agents: pl.DataFrame, manifest: Manifest, pairs: Collection[str] | None, *, complete: bool
 ) -> Iterator[Finding]:
-    """What is wrong with the agents of a run.
-
-    Args:
-        agents: The dead and the living.
-        manifest: Of the run. A branch's tables begin at the step of its first session.
-        pairs: Names of the species whose children have two parents; None where that is not known.
-        complete: Whether all agents up to the last step must be there.
-    """
+    """What is wrong with the agents of a run."""
     yield from break_rules(agents, "agents", _KEYS, _life_rules(manifest))
     unique = agents.unique(_KEYS, keep="first", maintain_order=True)
     family = _with_parents(unique, manifest)

@@ -21,14 +21,7 @@ _ROUNDING = 8 * 2.0**-53
 def check_population(
     population: pl.DataFrame, agents: pl.DataFrame | None, manifest: Manifest, *, ended: bool
 ) -> Iterator[Finding]:
-    """What is wrong with the intervals of a run.
-
-    Args:
-        population: Rows in the order in which they were written.
-        agents: All agents, each once; None if some are missing, so that counts cannot be compared.
-        manifest: Of the run.
-        ended: Whether the rows must reach to the last step.
-    """
+    """What is wrong with the intervals of a run."""
     yield from break_rules(population, "population", _keys(population), world_rules(manifest) | species_rules(manifest))
     for world, species in product(range(len(manifest.seeds)), manifest.species):
         here = pl.col("world") == world

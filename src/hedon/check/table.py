@@ -15,12 +15,7 @@ from hedon.record.part import load_part, value_faults
 
 
 def check_digests(folder: Path, parts: Mapping[str, Sequence[str]]) -> Iterator[Finding]:
-    """Compares the parts on disk with their SHA-256 in a checkpoint.
-
-    Args:
-        folder: of the run.
-        parts: by table, the SHA-256 of each part in order, in hexadecimal digits.
-    """
+    """Compares the parts on disk with their SHA-256 in a checkpoint."""
     for table, digests in parts.items():
         for index, digest in enumerate(digests):
             path = part_path(folder, table, index)
@@ -34,12 +29,7 @@ def check_digests(folder: Path, parts: Mapping[str, Sequence[str]]) -> Iterator[
 
 
 def check_numbering(folder: Path, table: str) -> Iterator[Finding]:
-    """Names the parts that are missing between the first and the last.
-
-    Args:
-        folder: of the run.
-        table: its name.
-    """
+    """Names the parts that are missing between the first and the last."""
     paths = part_paths(folder, table)
     expected = [part_path(folder, table, index) for index in range(len(paths))]
     if paths != expected:
@@ -50,13 +40,7 @@ def check_numbering(folder: Path, table: str) -> Iterator[Finding]:
 def read_parts(
     folder: Path, table: Table, manifest: Manifest | None
 ) -> Iterator[tuple[str, pl.DataFrame | None, list[Finding]]]:
-    """Each part of a table, then the file of the living: its name, its rows (None if damaged), what is wrong.
-
-    Args:
-        folder: of the run.
-        table: its schema.
-        manifest: of the run; None if it cannot be read, then values are not compared with it.
-    """
+    """Each part of a table, then the file of the living: its name, its rows (None if damaged), what is wrong."""
     paths = part_paths(folder, table.name)
     if table.name == "agents" and (folder / LIVING).exists():
         paths.append(folder / LIVING)

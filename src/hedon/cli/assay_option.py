@@ -59,13 +59,7 @@ class AssayOptions(ClusterOptions, _Worlds):
         return load_config(source, self.fidelity, self.overrides or ())
 
     def worlds(self, config: "Config", founders: "Founders | None", part: str = "run") -> "RunRequirement":
-        """Worlds that the assay needs.
-
-        Args:
-            config: Of the worlds.
-            founders: To begin with; None for those that the config draws.
-            part: Name of their run's folder.
-        """
+        """Worlds that the assay needs."""
         from hedon.assay.option import assay_worlds
 
         return assay_worlds(config, parse_seeds(self.seeds, "--seeds"), self.steps, founders, part)
@@ -74,11 +68,6 @@ class AssayOptions(ClusterOptions, _Worlds):
         self, kind: str, wanted: "Sequence[RunRequirement]", ask: "Callable[[Sequence[Sample]], Answer]"
     ) -> None:
         """Makes the worlds of an assay, or reads them, and prints and writes what they tell.
-
-        Args:
-            kind: Of the assay.
-            wanted: The worlds, by the setting that they begin with.
-            ask: What they tell.
 
         Raises:
             RecordError: A folder holds a run with other settings or founders.
@@ -148,9 +137,6 @@ class ContestOptions(AssayOptions, _Place):
 
     def setting(self, *sources: str) -> "tuple[Config, str]":
         """The condition without mutation, and the species that competes with itself.
-
-        Args:
-            sources: Of the founders; the first that is a run gives the condition if the user gave none.
 
         Raises:
             ConfigError: The condition cannot be used.

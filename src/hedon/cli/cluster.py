@@ -35,13 +35,6 @@ class ClusterOptions:
     def write_script(self, path: Path, name: str, words: Sequence[str], most: int, processors: int) -> Path:
         """Writes the job array.
 
-        Args:
-            path: Of the script.
-            name: What is made.
-            words: The command that makes a part of it, without `hedon` and --part.
-            most: Tasks that have something to do.
-            processors: Of each task.
-
         Raises:
             ClusterError: There is nothing to run, or --ray or --part is given too.
             RecordError: The script cannot be written.

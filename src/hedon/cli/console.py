@@ -11,11 +11,7 @@ FILE_WIDTH = 110
 
 
 def make_console(*, stderr: bool = False) -> "Console":
-    """A console as wide as the terminal, or wide enough for every table if there is no terminal.
-
-    Args:
-        stderr: Prints on standard error instead, as wide as the terminal.
-    """
+    """A console as wide as the terminal, or wide enough for every table if there is no terminal."""
     from rich.console import Console
 
     # What users name is printed as it is: brackets and colons in a name are no markup.

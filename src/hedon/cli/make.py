@@ -17,12 +17,6 @@ if TYPE_CHECKING:
 def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: str | None = None) -> dict[Path, str]:
     """Makes runs: says what they are if they are few, and shows them.
 
-    Args:
-        jobs: In the order in which they begin.
-        console: To print on.
-        threads: To use in total; 0 for all processors.
-        ray: Address of a Ray cluster; None for this machine.
-
     Returns:
         The status of each that ended, by its folder.
 
@@ -42,11 +36,7 @@ def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: 
 
 
 def tell_left_out(faults: Sequence[str]) -> None:
-    """Says which runs are not used and why, before others are made in their stead.
-
-    Args:
-        faults: As `find_runs` gives them.
-    """
+    """Says which runs are not used and why, before others are made in their stead."""
     for fault in faults:
         typer.echo(f"hedon: note: left out: {fault}", err=True)
 
@@ -55,12 +45,6 @@ def require_finished(
     jobs: "Sequence[Job]", ends: Mapping[Path, str], console: "Console", again: str = "The same command goes on."
 ) -> None:
     """Ends the command, and says why, unless all runs are finished.
-
-    Args:
-        jobs: All of them.
-        ends: As `make_runs` gives them.
-        console: To print on.
-        again: How to go on.
 
     Raises:
         JobError: A run failed.

@@ -10,11 +10,7 @@ Command = Callable[..., None]
 
 
 def with_options(kind: type) -> Callable[[Command], Command]:
-    """Gives a command the options of a dataclass after its own. The command takes them together, as `options`.
-
-    Args:
-        kind: a dataclass whose fields are annotated as options are, with their defaults.
-    """
+    """Gives a command the options of a dataclass after its own. The command takes them together, as `options`."""
     hints = get_type_hints(kind, include_extras=True)
     place = inspect.Parameter.KEYWORD_ONLY
     shared = [

@@ -37,15 +37,7 @@ def report(
 
 
 def show_report(run: Path, console: "Console", *others: Path, out: Path | None = None, figures: bool = True) -> None:
-    """Writes a report on one or more runs, and prints their summaries and where the files are.
-
-    Args:
-        run: Folder of the first run.
-        console: Where it prints.
-        others: Folders of more runs.
-        out: Folder of the report; None for one in the run's folder.
-        figures: Whether to draw figures.
-    """
+    """Writes a report on one or more runs, and prints their summaries and where the files are."""
     # Imported here because this takes seconds: neither another command nor the start of a run must wait for it.
     import json
 

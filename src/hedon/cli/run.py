@@ -101,14 +101,7 @@ def run(
 
 
 def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "", *, report: bool) -> None:
-    """Prints what will be run, shows progress while it runs, and reports.
-
-    Args:
-        plan: What is run.
-        go: Runs it, with a display.
-        begun: Where the run continues, as text to follow the number of steps.
-        report: Whether the run ends with a report.
-    """
+    """Prints what will be run, shows progress while it runs, and reports."""
     from hedon.cli.display.run import RunDisplay, duration
     from hedon.experiment.interrupt import interrupted_code
     from hedon.record.schema import columns_of

@@ -43,10 +43,6 @@ class Compared:
 def choose_factor(worlds: WorldTable, by: str | None) -> str:
     """The factor that distinguishes the two conditions.
 
-    Args:
-        worlds: What is compared.
-        by: Its name; None if there is only one.
-
     Raises:
         CompareError: There is no such factor, or there are several.
     """
@@ -68,11 +64,6 @@ def choose_factor(worlds: WorldTable, by: str | None) -> str:
 
 def choose_levels(by: str, every: Iterable[Any], between: str | None) -> tuple[Any, Any]:
     """Two values of a factor.
-
-    Args:
-        by: The name of the factor.
-        every: Its values, in any number.
-        between: The two values, separated by a comma; None if there are only two.
 
     Raises:
         CompareError: There are no two such values.
@@ -114,11 +105,6 @@ def _as_written(asked: str, values: Mapping[str, Any]) -> str:
 def comparable(worlds: WorldTable, by: str, levels: tuple[Any, Any]) -> tuple[pl.DataFrame, pl.DataFrame, list[str]]:
     """The worlds of two conditions, restricted to the settings of all other factors that both have.
 
-    Args:
-        worlds: What is compared.
-        by: The name of the factor.
-        levels: Its two values.
-
     Returns:
         The worlds of each condition, and the other factors in which they differ if they share no setting.
     """
@@ -142,15 +128,7 @@ def compare(
     *,
     paired: bool = True,
 ) -> list[Compared]:
-    """Compares two groups of worlds. Worlds of one seed count once, by their mean.
-
-    Args:
-        first: of the first condition, a row per world.
-        second: of the second.
-        shown: columns, and what they are called.
-        factors: columns of the other factors, in whose settings worlds are matched.
-        paired: whether to compare in pairs where both have worlds of the same seeds.
-    """
+    """Compares two groups of worlds. Worlds of one seed count once, by their mean."""
     found = []
     for name, title in shown.items():
         matched = match(first, second, name, factors, paired=paired)
@@ -168,13 +146,6 @@ def compare_answer(
     paired: bool = True,
 ) -> Answer:
     """The measures in which two conditions differ.
-
-    Args:
-        worlds: What is compared.
-        by: The factor that distinguishes the conditions; None if there is only one.
-        between: Two of its values, separated by a comma; None if it has two.
-        only: Columns to compare; by default the usual measures.
-        paired: Whether to compare in pairs where seeds are equal.
 
     Raises:
         CompareError: There is no such factor, value or column.
@@ -241,13 +212,7 @@ def _extinct(first: pl.DataFrame, second: pl.DataFrame, names: Sequence[str]) ->
 
 
 def draw_contrasts(found: Sequence[Compared], by: str, names: Sequence[str]) -> Figure:
-    """The size of each effect with its 95 % interval.
-
-    Args:
-        found: the measures.
-        by: the factor that tells the conditions apart.
-        names: its two values.
-    """
+    """The size of each effect with its 95 % interval."""
     with styled():
         figure = new_figure(6.4, 1.2 + 0.34 * len(found))
         axes = figure.subplots()

@@ -27,14 +27,7 @@ _CELL_DIGITS = 3
 
 
 def draw_curves(table: pl.DataFrame, factor: str, shown: Mapping[str, str], *, ranged: bool) -> Figure:
-    """A panel per response: worlds as dots, means as a line, their 95 % intervals as bars, along one factor.
-
-    Args:
-        table: of a sweep.
-        factor: along which.
-        shown: columns of responses, and their titles.
-        ranged: whether the factor was drawn from a range: means are then over groups of neighbors.
-    """
+    """A panel per response: worlds as dots, means as a line, their 95 % intervals as bars, along one factor."""
     with styled():
         rows = -(-len(shown) // _COLUMNS)
         figure = new_figure(9.0, 2.5 * rows)
@@ -50,14 +43,7 @@ def draw_curves(table: pl.DataFrame, factor: str, shown: Mapping[str, str], *, r
 
 
 def draw_map(table: pl.DataFrame, pair: tuple[str, str], name: str, title: str) -> Figure:
-    """A response over two factors: in each cell the mean over worlds, and half the width of its 95 % interval.
-
-    Args:
-        table: of a sweep.
-        pair: factors, to the right and up.
-        name: column of the response.
-        title: of it.
-    """
+    """A response over two factors: in each cell the mean over worlds, and half the width of its 95 % interval."""
     right, up = (table[factor].unique().sort().to_list() for factor in pair)
     made = {point.at: point.mean for point in points(table, list(pair), name)}
     means = np.full((len(up), len(right)), np.nan)

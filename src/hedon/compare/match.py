@@ -36,13 +36,6 @@ def match(first: pl.DataFrame, second: pl.DataFrame, name: str, factors: Sequenc
     In pairs, a world is compared with the world of the same seed and setting; a seed with several settings counts once,
     by the mean of its pairs. Otherwise the mean of each setting, both conditions weighted alike, is taken out first:
     else a setting with more worlds in one condition than in the other would look like a difference.
-
-    Args:
-        first: Worlds of the first condition, a row per world.
-        second: Of the second.
-        name: Column of the measure.
-        factors: Columns whose settings both conditions share.
-        paired: Whether to pair worlds of equal seeds; if most have no counterpart, they are compared as independent.
     """
     one, other = (known_values(table, name, factors) for table in (first, second))
     pairs = one.join(other, on=["seed", *factors], suffix="_other")
@@ -69,11 +62,6 @@ def match(first: pl.DataFrame, second: pl.DataFrame, name: str, factors: Sequenc
 
 def known_values(table: pl.DataFrame, name: str, factors: Sequence[str]) -> pl.DataFrame:
     """The value of each seed and setting that has one; replicates of a seed in one setting count once, by their mean.
-
-    Args:
-        table: A row per world.
-        name: Column of the measure.
-        factors: Columns of the settings.
 
     Returns:
         Columns "seed", those of the factors, and "value".

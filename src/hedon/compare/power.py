@@ -56,12 +56,6 @@ def spreads(
 ) -> list[PilotSpread]:
     """How much the worlds of a pilot differ.
 
-    Args:
-        pilot: Its worlds.
-        by: A factor with two values; worlds of equal seeds form pairs. None: no pairs.
-        between: Two values of the factor, separated by a comma; None if it has two.
-        only: Columns of measures; by default the usual ones.
-
     Raises:
         CompareError: There are too few worlds, or the factor does not have two values.
     """
@@ -125,15 +119,7 @@ def power_answer(
     level: float = 0.05,
     pilot: str = "",
 ) -> Answer:
-    """How many worlds are needed, for each measure and design; without effects, what some numbers of worlds see.
-
-    Args:
-        found: how much worlds differ.
-        effects: sizes, in units of the measures.
-        power: chance to find an effect.
-        level: of the test.
-        pilot: where the worlds are from.
-    """
+    """How many worlds are needed, for each measure and design; without effects, what some numbers of worlds see."""
     tables = [_needed(found, effects, power, level)] if effects else [_seen(found, power, level)]
     content = {"pilot": pilot, "power": power, "level": level, "effects": list(effects)}
     content["spreads"] = [vars(each) for each in found]
@@ -175,14 +161,7 @@ def _meanings(found: Sequence[PilotSpread]) -> str:
 
 
 def draw_power(found: Sequence[PilotSpread], effects: Sequence[float], power: float, level: float) -> Figure:
-    """The chance to see the first effect over the number of worlds; by the standard deviation, where none is given.
-
-    Args:
-        found: how much worlds differ; the first measure is drawn.
-        effects: sizes, in units of the measures.
-        power: chance that is asked for.
-        level: of the test.
-    """
+    """The chance to see the first effect over the number of worlds; by the standard deviation, where none is given."""
     own = [each for each in found if each.measure == found[0].measure]
     effect = effects[0] if effects else 0.5 * own[0].sd
     most = [worlds_needed(effect / each.sd, _TESTED[each.design], power, level) or 1000 for each in own]

@@ -31,12 +31,6 @@ MOST_CELLS = 400
 def write_report(plan: SweepPlan, table: pl.DataFrame, folder: Path, only: Sequence[str] = ()) -> list[Path]:
     """Writes response curves for each factor, maps for each two that are crossed, and a page that shows them.
 
-    Args:
-        plan: of the sweep.
-        table: of its worlds so far.
-        folder: made if it is not there.
-        only: columns of the table to show; by default the usual ones.
-
     Returns:
         The files written, the page first.
 
@@ -101,14 +95,7 @@ def _alone(table: pl.DataFrame) -> str:
 def settings_table(
     plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str] | None = None, most: int = MOST_CELLS
 ) -> ResultTable:
-    """A row per setting: its worlds, and the mean and interval of each response.
-
-    Args:
-        plan: of the sweep.
-        table: of its worlds so far.
-        shown: columns of the table, with what they are called; by default the usual ones.
-        most: rows.
-    """
+    """A row per setting: its worlds, and the mean and interval of each response."""
     if table.is_empty():
         return make_table("sweep", f"Sweep {plan.name}: no world yet", [])
     shown, factors = shown or responses(table, (), plan.factors), list(plan.factors)

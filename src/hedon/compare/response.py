@@ -33,11 +33,6 @@ class Point:
 def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str]) -> dict[str, str]:
     """The columns to show, with their titles.
 
-    Args:
-        table: A row per world.
-        asked: Columns that the user names; by default the usual measures, or all columns of numbers if there are none.
-        factors: Columns that distinguish conditions.
-
     Raises:
         CompareError: One is not a column of numbers.
     """
@@ -54,13 +49,7 @@ def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str])
 
 
 def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[Point]:
-    """The mean of a response at each combination of some factors' values, over all else that varies.
-
-    Args:
-        table: A row per world.
-        factors: Columns; none for all worlds together.
-        response: A column of numbers.
-    """
+    """The mean of a response at each combination of some factors' values, over all else that varies."""
     made = []
     if not factors:
         return [Point((), _response_interval(table, response))]
@@ -70,13 +59,7 @@ def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[P
 
 
 def binned(table: pl.DataFrame, factor: str, response: str) -> list[Point]:
-    """Means over groups of neighbors along a factor that was drawn from a range.
-
-    Args:
-        table: A row per world.
-        factor: A column.
-        response: A column of numbers.
-    """
+    """Means over groups of neighbors along a factor that was drawn from a range."""
     rows = table.sort(factor)
     count = min(BINS, max(1, rows.height // 4))
     edges = [round(i * rows.height / count) for i in range(count + 1)]

@@ -45,9 +45,6 @@ class WorldTable:
 def read_table(source: str) -> WorldTable:
     """Reads the worlds of one source.
 
-    Args:
-        source: A run or a folder of runs, a sweep, an assay, a study, or a file with a row per world.
-
     Raises:
         CompareError: It is none of these, or holds no world.
         RecordError, ConfigError, SweepError: It cannot be read.
@@ -58,9 +55,6 @@ def read_table(source: str) -> WorldTable:
 
 def read_both(sources: tuple[str, str]) -> WorldTable:
     """Reads the worlds of two sources as one table with the factor "source"; runs are cut to a common length.
-
-    Args:
-        sources: Two different sources, each as for `read_table`.
 
     Raises:
         CompareError: They are the same, one holds several conditions of runs, or their worlds differ in length.

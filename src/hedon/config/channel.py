@@ -155,12 +155,7 @@ Channels = dict[tuple[str, int], Channel]
 
 
 def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
-    """Every channel of a species. Two can have one name, where kinds or stores are called so.
-
-    Args:
-        config: with what the species shares with others.
-        species: one of the config's.
-    """
+    """Every channel of a species. Two can have one name, where kinds or stores are called so."""
     eaten, smells = diet(config, species), smelled(config, species.sensor.smells)
     alive = {name for name, query in species.neighbor.items() if {*asked_for(config, query.of)} & config.species.keys()}
     names: dict[str, Sequence[str | None]] = {
@@ -195,10 +190,6 @@ def season_place(config: Settings, species: SpeciesConfig) -> str:
 
     Returns:
         A path in the config if it begins with "food." or "obstacle.", else one in the species; "" for no year.
-
-    Args:
-        config: with what the species shares with others.
-        species: one of the config's.
     """
     if species.sensor.season_period:
         return "sensor.season_period"
@@ -216,22 +207,12 @@ def season_place(config: Settings, species: SpeciesConfig) -> str:
 
 
 def called(known: Channels, name: str) -> list[Channel]:
-    """The channels of a name: one, unless it is not known, or kinds or stores make two of them.
-
-    Args:
-        known: all channels of a species.
-        name: as a user gives it.
-    """
+    """The channels of a name: one, unless it is not known, or kinds or stores make two of them."""
     return [channel for channel in known.values() if channel.name == name]
 
 
 def plain_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel, ...]:
-    """What a species observes beside rays and touch without `sensor.observes`, in order: model page, section 5.
-
-    Args:
-        species: with its stores.
-        known: all its channels.
-    """
+    """What a species observes beside rays and touch without `sensor.observes`, in order: model page, section 5."""
     sensor, raw = species.sensor, species.sensor.scaling == "raw"
 
     def scaled(source: str, index: int, scale: float, place: str) -> Channel:
@@ -252,12 +233,7 @@ def plain_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel, ..
 
 
 def observed_channels(species: SpeciesConfig, known: Channels) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
-    """What a species observes beside rays and touch, in order, and what of a step is kept for it until the next.
-
-    Args:
-        species: with its stores.
-        known: all its channels.
-    """
+    """What a species observes beside rays and touch, in order, and what of a step is kept for it until the next."""
     added: list[Channel] = []
     last: list[Channel] = []
     for name, scale in species.sensor.observes.items():
@@ -274,10 +250,6 @@ def recorded_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel,
 
     Where there are other stores than energy, each is there as it was at the start of the step and as it is; then what
     each query about neighbors found.
-
-    Args:
-        species: with its stores and its queries.
-        known: all its channels.
     """
     stores = [known[source, i + 1] for i in range(len(species.store)) for source in ("store_before", "store")]
     asked = (each for each in known.values() if each.source in QUERIED)

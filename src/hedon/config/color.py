@@ -19,21 +19,12 @@ OTHER_COLORS = ("#b8322a", "#3a5fa8", "#7a4fa3", "#b07d1a")
 
 
 def species_color(index: int) -> str:
-    """The color of a species.
-
-    Args:
-        index: among the species of a config.
-    """
+    """The color of a species."""
     return SPECIES_COLORS[index % len(SPECIES_COLORS)]
 
 
 def food_colors(food_kinds: Sequence[str], wanted: Sequence[str] = ()) -> dict[str, str]:
-    """A color per food kind: the one that is wanted; where another kind has it already, the next one that is free.
-
-    Args:
-        food_kinds: names, in the order of the config.
-        wanted: a color for each; else none of them counts.
-    """
+    """A color per food kind: the one that is wanted; where another kind has it already, the next one that is free."""
     given = wanted if len(wanted) == len(food_kinds) else FOOD_COLORS[:1] * len(food_kinds)
     colors: dict[str, str] = {}
     for kind, color in zip(food_kinds, given, strict=True):
@@ -43,23 +34,13 @@ def food_colors(food_kinds: Sequence[str], wanted: Sequence[str] = ()) -> dict[s
 
 
 def meal_colors(config: Settings, prey: Sequence[str] = ()) -> dict[str, str]:
-    """A color per food kind of a config, and per species that is eaten.
-
-    Args:
-        config: with the colors of its foods.
-        prey: names of the species that are eaten.
-    """
+    """A color per food kind of a config, and per species that is eaten."""
     foods = food_colors(list(config.food), [food.color for food in config.food.values()])
     return foods | {name: species_color(list(config.species).index(name)) for name in prey}
 
 
 def weight_colors(names: Iterable[str], kinds: Mapping[str, str]) -> dict[str, str]:
-    """A color per weight: that of what is eaten, or those of action, of other rewards and of neutral markers.
-
-    Args:
-        names: genome columns.
-        kinds: color per thing that is eaten.
-    """
+    """A color per weight: that of what is eaten, or those of action, of other rewards and of neutral markers."""
     others = iter(OTHER_COLORS * 8)
     colors = {}
     for name in names:

@@ -26,11 +26,6 @@ class Config(Settings):
     def with_(self, path: str, value: Any) -> "Config":
         """The same config with another value of one setting, checked.
 
-        Args:
-            path: As in a complete file, `species.prey.birth.kappa`, or as in a short one: `birth.kappa` is that of all
-                species, `food.*.capacity` that of all kinds of food.
-            value: Of the setting's type; a table for a section.
-
         Raises:
             ConfigError: There is no such setting, or the value cannot be used.
             ArgumentError: The path is no text.
@@ -57,10 +52,6 @@ class Config(Settings):
 
 def validated(config: Config, origin: str = "config") -> Config:
     """The same config, after all checks; for a config that was made in Python.
-
-    Args:
-        config: put together in any way.
-        origin: what errors call it.
 
     Raises:
         ConfigError: A type, a range or a name is wrong, or settings contradict one another.

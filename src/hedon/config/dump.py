@@ -22,10 +22,6 @@ _HEAD = "# Complete: this file has every setting; none comes from the preset or 
 def dump_toml(config: Settings, section: str | None = None) -> str:
     """Writes a config as a TOML file that loads to an equal config; each setting with its meaning and unit.
 
-    Args:
-        config: What to write.
-        section: Write only this section: "food", "food.normal", "species.prey.energy", or "energy" of every species.
-
     Returns:
         The text. With a section it is not a complete file, but a part of one.
 
@@ -92,11 +88,7 @@ class Fingerprint:
         self._rows = {path: json.dumps([path, value]) for path, _, value in counted}
 
     def digest(self, values: Mapping[str, Any]) -> str:
-        """The digest of the config with other values; see `digest`.
-
-        Args:
-            values: By the path of a setting as `leaves` has it, of the types that configs have.
-        """
+        """The digest of the config with other values; see `digest`."""
         changed = {path: json.dumps([path, value]) for path, value in values.items() if path in self._rows}
         rows = ", ".join((self._rows | changed).values())
         return hashlib.sha256(f'{{"schema": {json.dumps(SCHEMA)}, "settings": [{rows}]}}'.encode()).hexdigest()
@@ -104,10 +96,6 @@ class Fingerprint:
 
 def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:
     """The settings in which two configs differ.
-
-    Args:
-        a: the first config.
-        b: the second config.
 
     Returns:
         (path, value in a, value in b) in order, with None for a setting that is absent. If the kinds of food or

@@ -75,12 +75,7 @@ def engine_paths(config: Config) -> dict[str, list[str]]:
 
 
 def flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    """What nested dicts and lists have, each by its path, as in `food[0].energy`.
-
-    Args:
-        value: as `engine_config` gives it.
-        path: of the value.
-    """
+    """What nested dicts and lists have, each by its path, as in `food[0].energy`."""
     if isinstance(value, dict):
         for name, inner in value.items():
             yield from flat(inner, f"{path}.{name}" if path else name)

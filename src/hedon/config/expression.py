@@ -43,11 +43,7 @@ def settable() -> Mapping[str, Setting]:
 
 
 def kind_of(path: str) -> str:
-    """The path of a number in `settable`: `store.<kind>.decay` for `energy.decay` and `store.water.decay`.
-
-    Args:
-        path: in a species.
-    """
+    """The path of a number in `settable`: `store.<kind>.decay` for `energy.decay` and `store.water.decay`."""
     section, *names = path.split(".")
     return f"store.<kind>.{'.'.join(names[-1:])}" if section in (ENERGY, "store") else path
 
@@ -63,21 +59,13 @@ def engine_name(path: str) -> str:
 
 
 def limits_of(path: str) -> tuple[float, float]:
-    """The least and the largest value that a gene can give a number.
-
-    Args:
-        path: of `settable`.
-    """
+    """The least and the largest value that a gene can give a number."""
     allowed = settable()[path].doc.range
     return (SMALLEST if allowed.ge is None else allowed.ge), (math.inf if allowed.le is None else allowed.le)
 
 
 def of_mean_founders(species: SpeciesConfig) -> SpeciesConfig:
-    """A species with the numbers that genes set as those of a founder with mean genes.
-
-    Args:
-        species: with its genes.
-    """
+    """A species with the numbers that genes set as those of a founder with mean genes."""
     for path, law in species.genome.set.items():
         species = _put(species, path.split("."), expressed(species, path, law.initial_mean))
     return species

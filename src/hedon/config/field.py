@@ -139,14 +139,7 @@ class Section:
 def section(
     make: Callable[[], Any] = dict, *, most: int = 0, names: Mapping[str, Any] | None = None, derived: bool = False
 ) -> Any:
-    """Declares a section, or a table of sections by name.
-
-    Args:
-        make: Makes its default.
-        most: How many there may be, where users choose the names.
-        names: The names, where they are given, each with the largest factor of a schedule or the meaning of a gene.
-        derived: As for a setting: its settings reach the engine in layouts alone.
-    """
+    """Declares a section, or a table of sections by name."""
     return field(default_factory=make, metadata={"section": (most, names or {}, derived)})
 
 
@@ -177,12 +170,7 @@ def sections(section: type) -> Mapping[str, Section]:
 
 
 def number_of(table: Setting, name: str) -> Setting:
-    """One number of a table of them, as a setting.
-
-    Args:
-        table: The setting that is a table.
-        name: Of the number in it.
-    """
+    """One number of a table of them, as a setting."""
     low, high = table.doc.range.each or (-math.inf, math.inf)
     return Setting(name, float, 0.0, replace(table.doc, range=Range(ge=low, le=high)))
 
@@ -205,10 +193,6 @@ def engine_sections(section: type) -> Mapping[str, Section]:
 def value_at(section: Any, path: str) -> Any:
     """What a config, or a part of one, has at a path.
 
-    Args:
-        section: a config, a section, or a table of sections.
-        path: names joined by points.
-
     Raises:
         ValueError: There is no such name in a table of sections.
         AttributeError: A section has no such setting.
@@ -224,12 +208,7 @@ def value_at(section: Any, path: str) -> Any:
 
 
 def inner_sections(section: Any, path: str = "") -> Iterator[tuple[str, Section, Any]]:
-    """Every section that is directly in a section, or in a table of it, by its path, in order.
-
-    Args:
-        section: a config, or a part of one.
-        path: of the section, with a dot at its end; empty for the config itself.
-    """
+    """Every section that is directly in a section, or in a table of it, by its path, in order."""
     for name, inner in sections(type(section)).items():
         below = getattr(section, name)
         for each, own in below.items() if inner.repeated else [("", below)]:
@@ -240,10 +219,6 @@ def leaves(section: Any, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
     """Every setting in a section and its inner sections by its path, in order, with its value.
 
     A table of numbers has a path for each of them: `food.normal.gives.energy`.
-
-    Args:
-        section: a config, or a part of one.
-        path: of the section, with a dot at its end; empty for the config itself.
     """
     for name, setting in settings(type(section)).items():
         value = getattr(section, name)

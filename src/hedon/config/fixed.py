@@ -17,10 +17,6 @@ FIXED = (
 
 
 def fixed_path(path: str) -> bool:
-    """Whether a setting cannot be changed in a world that has begun.
-
-    Args:
-        path: of the setting.
-    """
+    """Whether a setting cannot be changed in a world that has begun."""
     food = path == "food" or (path.startswith("food.") and path.endswith(".capacity"))
     return food or default_path(path).startswith(FIXED)

@@ -7,22 +7,12 @@ from hedon.config.schema.settings import Settings
 
 
 def gene_of(config: Settings, column: str) -> Gene:
-    """The gene of a column, of the first species that has it; a column such as "prey.w_normal" names the species.
-
-    Args:
-        config: with the species.
-        column: of a genome.
-    """
+    """The gene of a column, of the first species that has it; a column such as "prey.w_normal" names the species."""
     return _genes(layouts(config), column)[0]
 
 
 def limits_of(config: Settings, columns: Iterable[str]) -> dict[str, float]:
-    """What genes are clipped to, on both sides, by column; without a species in the column, in all that have it.
-
-    Args:
-        config: with the species.
-        columns: of a genome.
-    """
+    """What genes are clipped to, on both sides, by column; without a species in the column, in all that have it."""
     made = layouts(config)
     return {column: min(gene.mutation.limit for gene in _genes(made, column)) for column in columns}
 

@@ -57,10 +57,6 @@ def settle_species(tables: Table, layers: Sequence[Table]) -> Iterator[Problem]:
 
     A species that is false is removed; if none is left, there is one that has the defaults. Yields what is wrong with
     the species, and each default of `layers`, those of the user, that changes nothing: where every species has its own.
-
-    Args:
-        tables: of all layers together.
-        layers: those of the user: a file, then overrides.
     """
     common = {name: tables.pop(name) for name in PER_SPECIES if name in tables}
     species = tables.setdefault("species", {})
@@ -108,12 +104,7 @@ def with_defaults(complete: Table) -> Table:
 
 
 def has(table: Any, path: Sequence[str]) -> bool:
-    """Whether nested tables have something at a path.
-
-    Args:
-        table: any value of TOML.
-        path: names, one for each level.
-    """
+    """Whether nested tables have something at a path."""
     for name in path:
         if not isinstance(table, dict) or name not in table:
             return False

@@ -132,12 +132,7 @@ def gene_columns(config: Settings) -> tuple[str, ...]:
 
 
 def observation_columns(config: Settings, name: str) -> tuple[str, ...]:
-    """Names of the entries of what a species observes, in order: model page, section 5.
-
-    Args:
-        config: with the species.
-        name: of the species.
-    """
+    """Names of the entries of what a species observes, in order: model page, section 5."""
     species, layout = config.species[name], layout_of(config, config.species[name])
     return (
         *(f"ray_{kind}_{i}" for kind in layout.sees for i in range(species.sensor.ray_count)),
@@ -158,11 +153,6 @@ def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str,
     `drive_reduction`. What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth.
     Where there are other stores than energy, they stand before it, each as it was at the start of the step and as it
     is.
-
-    Args:
-        config: with the species.
-        name: of the species.
-        use: of the rule: "reward", "hazard" or "birth".
     """
     layout, memory = layout_of(config, config.species[name]), config.species[name].reward.memory
     inputs = (term.name for term in layout.terms)
@@ -173,10 +163,6 @@ def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str,
 
 def choose_species(name: str | None, config: Settings) -> str:
     """The species of this name, or by default the first.
-
-    Args:
-        name: as a user gives it, or None.
-        config: with the species.
 
     Raises:
         ArgumentError: There is no such species.
@@ -241,12 +227,7 @@ def _most(family: str, role: str, name: str) -> float:
 
 
 def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
-    """The layouts of one species. There must be all channels that it is rewarded for.
-
-    Args:
-        config: with what the species shares with others.
-        species: one of the config's.
-    """
+    """The layouts of one species. There must be all channels that it is rewarded for."""
     made, genome, reward = _Layout(config, species), species.genome, species.reward
     eaten, known = diet(config, species), made.known
     for meal, name in enumerate((*config.food, *config.species)):

@@ -64,13 +64,6 @@ FIDELITIES = ("corrected", "released", "as_printed")
 def load_config(source: str | Path, fidelity: str | None = None, overrides: Iterable[str] = ()) -> Config:
     """Loads a run's settings.
 
-    Args:
-        source: The name of a preset, or the path of a TOML file, which may start with `preset` and
-            `fidelity` and then has only the settings that differ. A file with `complete = true`, as `dump_toml`
-            writes it, has all settings and takes none from a preset.
-        fidelity: One of `FIDELITIES`; replaces the one in the file.
-        overrides: Texts `path=value`, as for `--set`; the last one counts.
-
     The file of a rule in Python is looked up from the folder of the TOML file, or from the current folder if an
     override names it; the config has its absolute path.
 
@@ -106,10 +99,6 @@ def _config_of(tables: Table, path: Path | None, fidelity: str | None = None, te
 def load_config_text(text: str, path: Path) -> Config:
     """As `load_config` of a file whose text has been read.
 
-    Args:
-        text: TOML.
-        path: Of the file.
-
     Raises:
         ConfigError: Something in it is wrong; the error lists all problems.
     """
@@ -118,10 +107,6 @@ def load_config_text(text: str, path: Path) -> Config:
 
 def parse_config(text: str, origin: str) -> Config:
     """The config of a complete TOML text, as `dump_toml` writes it.
-
-    Args:
-        text: TOML.
-        origin: what errors call it.
 
     Raises:
         ConfigError: Something in it is wrong or missing.
@@ -167,9 +152,6 @@ def describe_fidelity(name: str) -> str:
 
 def override_texts(overrides: Iterable[str]) -> list[str]:
     """The overrides as a list.
-
-    Args:
-        overrides: Texts, or a single one.
 
     Raises:
         ArgumentError: They are something else.

@@ -14,11 +14,6 @@ _WORD = re.compile(r"[A-Za-z_#][\w.#/-]*")
 def parse_override(text: str) -> Table | Problem:
     """Reads `path=value` as nested tables.
 
-    Args:
-        text: A path of names joined by points (a name may be in quotes, `*` is every kind of food), "=",
-            and a TOML value. A single word that is not a TOML value is a text, so that `sensor.scaling=unit`
-            needs no quotes.
-
     Returns:
         The tables, or what is wrong with the text.
     """

@@ -74,37 +74,17 @@ class Check:
         self.problems: list[Problem] = []
 
     def add(self, path: str, rule: str, near: str | None = None) -> None:
-        """Adds a problem that no single value shows.
-
-        Args:
-            path: of the setting, or of a section.
-            rule: what is wrong and what is allowed.
-            near: a valid name close to the one there.
-        """
+        """Adds a problem that no single value shows."""
         self.problems.append(Problem(path, rule, nearest=near))
 
     def need(self, good: bool, path: str, rule: str, value: Any = None, near: str | None = None) -> None:
-        """Adds a problem unless all is good.
-
-        Args:
-            good: whether the rule holds.
-            path: of the setting.
-            rule: what is wrong and what is allowed.
-            value: what is wrong, if it is not just the setting.
-            near: a valid name close to it.
-        """
+        """Adds a problem unless all is good."""
         if not good:
             shown = format_value(value_at(self.config, path) if value is None else value)
             self.problems.append(Problem(path, rule, shown, near))
 
     def match(self, pattern: str, path: str, rule: str) -> None:
-        """Adds a problem unless the text at a path matches a pattern as a whole.
-
-        Args:
-            pattern: a regular expression.
-            path: of the setting.
-            rule: what is wrong and what is allowed.
-        """
+        """Adds a problem unless the text at a path matches a pattern as a whole."""
         self.need(bool(re.fullmatch(pattern, value_at(self.config, path))), path, rule)
 
     def has(self, start: str) -> bool:
@@ -113,12 +93,7 @@ class Check:
 
 
 def folded(problems: Iterable[Problem], species: Sequence[str]) -> list[Problem]:
-    """The same problems, each once under the path of a file's default where all species have it.
-
-    Args:
-        problems: of a config, by path.
-        species: all names.
-    """
+    """The same problems, each once under the path of a file's default where all species have it."""
     found: list[Problem] = list(problems)
     short: dict[Problem, set[Problem]] = {}
     for problem in found:
@@ -155,13 +130,7 @@ def single(value: float) -> float:
 
 
 def nearest(name: str, names: Iterable[str], alike: float = 0.6) -> str | None:
-    """The valid name closest to the given one, or None if none is close.
-
-    Args:
-        name: as a user gave it.
-        names: the valid ones.
-        alike: how alike they must be, from 0 to 1, as `difflib` measures it.
-    """
+    """The valid name closest to the given one, or None if none is close."""
     if len(name) > LINE:  # no valid name is so long, and a comparison would take long
         return None
     matches = get_close_matches(name, list(names), n=1, cutoff=alike)

@@ -70,11 +70,7 @@ def _moves(tables: Table) -> Iterator[tuple[str, str]]:
 
 
 def renamed(tables: Table) -> Iterator[Problem]:
-    """Yields each setting that has another path now, and each choice that has another name.
-
-    Args:
-        tables: Of a layer: a file, or overrides.
-    """
+    """Yields each setting that has another path now, and each choice that has another name."""
     for old, new in _moves(tables):
         yield Problem(old, f"is called {new} now")
     for place, own in _owners(tables).items():
@@ -87,11 +83,7 @@ def renamed(tables: Table) -> Iterator[Problem]:
 
 
 def new_path(path: str) -> str | None:
-    """What a setting is called now that another version had at this path; None if none had it.
-
-    Args:
-        path: as in a file of one species.
-    """
+    """What a setting is called now that another version had at this path; None if none had it."""
     names = path.split(".")
     if len(names) == 3 and names[0] == "food" and names[2] in GIVEN:
         return f"food.{names[1]}.gives.{names[2]}"

@@ -23,10 +23,6 @@ def absolute_rule(place: Any, folder: Path) -> Any:
 
     One with a digest stays as it is: a run that has it keeps its text, wherever the file is by now. So does what is no
     place of a rule, which is refused later.
-
-    Args:
-        place: a value of the setting `rule`.
-        folder: that the path starts from.
     """
     match = re.fullmatch(RULE_PATTERN, place) if isinstance(place, str) else None
     if match is None or match[3] or "\0" in place:
@@ -35,12 +31,7 @@ def absolute_rule(place: Any, folder: Path) -> Any:
 
 
 def with_absolute_rules(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables of a config with the absolute paths of the files of rules.
-
-    Args:
-        tables: of the config, or of a part of it.
-        folder: that paths start from.
-    """
+    """The tables of a config with the absolute paths of the files of rules."""
     found = dict(tables)
     for name, value in tables.items():
         if isinstance(value, dict):

@@ -9,12 +9,7 @@ _ADJECTIVES = ("normal", "poor")
 
 
 def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:
-    """What the panel of each weight is called: those that enter the reward, and the first neutral marker.
-
-    Args:
-        reward_names: columns of the weights that enter the reward.
-        neutral_names: columns of the genes without effect.
-    """
+    """What the panel of each weight is called: those that enter the reward, and the first neutral marker."""
     return {name: weight_title(name) for name in reward_names} | dict.fromkeys(neutral_names[:1], "neutral marker")
 
 

@@ -45,10 +45,6 @@ def read_toml(path: Path) -> Table:
 def parse_toml(text: str, origin: str) -> Table:
     """Reads a text.
 
-    Args:
-        text: TOML, which may come from anyone.
-        origin: what errors call it.
-
     Raises:
         ConfigError: It is not TOML that could be a config.
     """
@@ -67,10 +63,6 @@ def parse_toml(text: str, origin: str) -> Table:
 
 def require_plain(tables: Any, origin: str) -> None:
     """Refuses tables that are deeper or larger than a config can be, and integers with too many digits.
-
-    Args:
-        tables: as a parser gives them.
-        origin: what errors call the file.
 
     Raises:
         ConfigError: They are.

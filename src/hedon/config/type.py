@@ -19,12 +19,7 @@ def types(config: Settings) -> tuple[str, ...]:
 
 
 def diet(config: Settings, species: SpeciesConfig) -> dict[str, float]:
-    """What a species eats: factors by name.
-
-    Args:
-        config: with the foods.
-        species: one of the config's.
-    """
+    """What a species eats: factors by name."""
     return {
         each: factor
         for name, factor in species.diet.eats
@@ -43,42 +38,22 @@ def hunted(config: Settings) -> str:
 
 
 def hunters(config: Settings, name: str) -> tuple[str, ...]:
-    """The other species that eat a species, in order.
-
-    Args:
-        config: with the species.
-        name: of the species that is eaten.
-    """
+    """The other species that eat a species, in order."""
     return tuple(other for other, each in config.species.items() if other != name and name in diet(config, each))
 
 
 def chosen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
-    """The types that a list of names stands for, in order; walls and obstacles are always among them.
-
-    Args:
-        config: with the types.
-        names: of types, or `EVERYTHING`.
-    """
+    """The types that a list of names stands for, in order; walls and obstacles are always among them."""
     every = types(config)
     return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
 
 
 def asked_for(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
-    """The types that a query finds by a list of names, in order: species and kinds of food.
-
-    Args:
-        config: with the types.
-        names: of types, or `EVERYTHING` for every species.
-    """
+    """The types that a query finds by a list of names, in order: species and kinds of food."""
     every = config.species if EVERYTHING in names else ()
     return tuple(name for name in (*config.species, *config.food) if name in names or name in every)
 
 
 def smelled(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
-    """The sources of smell that a list of names stands for, in order: species and kinds of food.
-
-    Args:
-        config: with the types.
-        names: of sources, or `EVERYTHING`.
-    """
+    """The sources of smell that a list of names stands for, in order: species and kinds of food."""
     return tuple(name for name in (*config.species, *config.food) if name in names or EVERYTHING in names)

@@ -21,12 +21,6 @@ S = TypeVar("S", bound=Settings)
 def build(root: type[S], tables: Mapping[str, Any], origin: str, found: Sequence[Problem] = ()) -> S:
     """Builds a config from nested tables; settings that are not given have their defaults.
 
-    Args:
-        root: `Config`.
-        tables: Sections and settings by name, as TOML gives them.
-        origin: The name of the tables in errors.
-        found: Problems that are known already; what else is wrong at their places is not told.
-
     Raises:
         ConfigError: A type, a range or a name is wrong, or settings contradict one another; or something was found.
     """
@@ -48,11 +42,6 @@ def rebuild(config: S, values: Mapping[str, Any], origin: str) -> S:
     """The same config with other values of some settings: only these are checked, and contradictions.
 
     It takes a fifth of the time of `build`: sweeps change the same few settings many times.
-
-    Args:
-        config: that has passed all checks.
-        values: by the complete path of a setting, or of a number of a table, as `leaves` has them.
-        origin: what errors call it.
 
     Raises:
         ConfigError: A type or a range is wrong, or settings contradict one another.

@@ -16,34 +16,18 @@ def need(own: SpeciesConfig) -> float:
 
 
 def gains(config: Config, own: SpeciesConfig) -> dict[str, float]:
-    """The energy that a species gains by a piece of each kind of food that it eats; negative for poison.
-
-    Args:
-        config: Settings of the world, for its foods.
-        own: The species.
-    """
+    """The energy that a species gains by a piece of each kind of food that it eats; negative for poison."""
     eaten = diet(config, own)
     return {kind: eaten[kind] * food.gives.get("energy", 0.0) for kind, food in config.food.items() if kind in eaten}
 
 
 def feeding(config: Config, own: SpeciesConfig) -> dict[str, float]:
-    """The energy that a species gains by a piece of each kind of food that feeds it.
-
-    Args:
-        config: Settings of the world, for its foods.
-        own: The species.
-    """
+    """The energy that a species gains by a piece of each kind of food that feeds it."""
     return {kind: energy for kind, energy in gains(config, own).items() if energy > 0}
 
 
 def supply(config: Config, own: SpeciesConfig, factor: Callable[[FoodConfig], float]) -> float:
-    """Energy that grows as food that a species eats [energy/step].
-
-    Args:
-        config: Settings of the world, for its foods.
-        own: The species.
-        factor: Factor of the growth of a kind.
-    """
+    """Energy that grows as food that a species eats [energy/step]."""
     return sum(
         config.food[kind].growth_rate * factor(config.food[kind]) * energy
         for kind, energy in feeding(config, own).items()

@@ -44,12 +44,6 @@ def equilibria(config: Config, species: str, ground: Ground, success: Floats) ->
 
     In both, all have the same energy. In a run some eat far more than others, and have most of the children; the last
     equilibrium, of agents that are always full, therefore bounds the length of a generation.
-
-    Args:
-        config: Settings of the world.
-        species: Whose population.
-        ground: Where food lies and how often agents come by.
-        success: Chance that a birth finds a place with 0, 1, … agents, (capacity + 1,).
     """
     own = config.species[species]
     if not gains(config, own):

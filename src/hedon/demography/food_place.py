@@ -156,12 +156,7 @@ def _fill(config: Config, food: FoodConfig, steps: int, rng: np.random.Generator
 
 
 def missing_at_start(config: Config, rng: np.random.Generator) -> str:
-    """What finds no place when a world is made, in words; empty if all founders and first foods do.
-
-    Args:
-        config: Of the world.
-        rng: Source of the draws, one scene.
-    """
+    """What finds no place when a world is made, in words; empty if all founders and first foods do."""
     size = np.array([config.arena.width, config.arena.height])
     bodies, radii = np.empty((0, 2)), np.empty(0)
 

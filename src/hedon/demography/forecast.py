@@ -57,10 +57,6 @@ class Forecast:
 def forecast(config: Config, species: str | None = None) -> Forecast:
     """Computes the forecast of a setting.
 
-    Args:
-        config: Of the worlds.
-        species: Whose; by default the first.
-
     Raises:
         ArgumentError: There is no such species.
     """
@@ -95,10 +91,6 @@ def forecast(config: Config, species: str | None = None) -> Forecast:
 
 def setting_warnings(config: Config, species: str | None = None) -> tuple[str, ...]:
     """What to know of a setting before running, in sentences: those of its forecast that need no samples.
-
-    Args:
-        config: Of the worlds.
-        species: Whose; by default the first.
 
     Raises:
         ArgumentError: There is no such species.

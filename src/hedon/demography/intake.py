@@ -88,12 +88,7 @@ class _Foods(NamedTuple):
 
 
 def survey(config: Config, rng: np.random.Generator) -> Ground:
-    """Samples where each kind of food can lie, and how often agents of each species come by.
-
-    Args:
-        config: Settings of the world.
-        rng: Source of the samples.
-    """
+    """Samples where each kind of food can lie, and how often agents of each species come by."""
     places = tuple(food_places(config, food, FORECAST_STEPS, rng) for food in config.food.values())
     visits = {}
     for name, own in config.species.items():
@@ -111,12 +106,6 @@ def first_intake(config: Config, species: str, ground: Ground, success: Floats) 
 
     Foods grow where there is room and are eaten as agents come by. A newborn starts to walk anew, and a birth fails as
     often as it finds no place. Other species keep their founders.
-
-    Args:
-        config: Settings of the world.
-        species: Whose intake.
-        ground: From `survey`.
-        success: Chance that a birth finds a place with 0, 1, … agents, (capacity + 1,).
 
     Returns:
         One for each kind of food that the species eats.

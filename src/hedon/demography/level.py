@@ -39,12 +39,7 @@ class Room:
 
 
 def levels_of(own: SpeciesConfig, places: tuple[Room, ...]) -> tuple[EnergyLevel, ...]:
-    """Lives at some energies up to the capacity.
-
-    Args:
-        own: The species.
-        places: Chances of finding a place; if empty, the numbers of agents that room allows are NaN.
-    """
+    """Lives at some energies up to the capacity."""
     most = own.energy.capacity
     energies = [*(energy for energy in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if energy < most), most]
     return tuple(_level(own, energy, places) for energy in energies)

@@ -26,13 +26,6 @@ def placement_success(
     Gaussian places around itself as it may. In a run agents gather where food is, and foods are fewer, so
     this is a guide, not a prediction.
 
-    Args:
-        config: the settings.
-        species: whose births.
-        sizes: numbers of agents in the arena, ascending, from 1 on.
-        rng: source of chance.
-        scenes: how many random scenes are averaged.
-
     Returns:
         One chance per size, (sizes,).
     """

@@ -33,12 +33,7 @@ def factor_at(schedules: Mapping[str, ScheduleConfig], name: str, step: ArrayLik
 
 
 def mean_factor(schedules: Mapping[str, ScheduleConfig], name: str) -> float:
-    """The mean factor of a setting over the steps of a period, exactly; without a period the last one, which stays.
-
-    Args:
-        schedules: of one section, by the name of the setting.
-        name: of the setting.
-    """
+    """The mean factor of a setting over the steps of a period, exactly; without a period the last one, which stays."""
     schedule = schedules.get(name)
     if schedule is None or not schedule.points:
         return 1.0
@@ -50,12 +45,7 @@ def mean_factor(schedules: Mapping[str, ScheduleConfig], name: str) -> float:
 
 
 def factor_range(schedules: Mapping[str, ScheduleConfig], name: str) -> tuple[float, float]:
-    """The smallest and the largest factor that a setting ever has.
-
-    Args:
-        schedules: of one section, by the name of the setting.
-        name: of the setting.
-    """
+    """The smallest and the largest factor that a setting ever has."""
     schedule = schedules.get(name)
     factors = [factor for _, factor in schedule.points] if schedule is not None else []
     return min(factors, default=1.0), max(factors, default=1.0)
@@ -80,10 +70,5 @@ def mean_hazard(own: SpeciesConfig) -> HazardConfig:
 
 
 def scaled_hazard(hazard: HazardConfig, factor: float) -> HazardConfig:
-    """A hazard with all chances times a factor, and without a schedule.
-
-    Args:
-        hazard: the constants.
-        factor: of kappa and alpha_age, and so of every chance of death.
-    """
+    """A hazard with all chances times a factor, and without a schedule."""
     return replace(hazard, kappa=factor * hazard.kappa, alpha_age=factor * hazard.alpha_age, schedule={})

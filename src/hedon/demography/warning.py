@@ -19,13 +19,7 @@ LONG_LIFE = 100_000
 
 
 def warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...]) -> tuple[str, ...]:
-    """What follows from the settings of a species, without samples.
-
-    Args:
-        config: Settings of the world, of founders with mean genes.
-        species: Whose forecast.
-        levels: Its lives at constant energy.
-    """
+    """What follows from the settings of a species, without samples."""
     own = config.species[species]
     starving, best = levels[0], max(levels, key=lambda level: level.r0)
     capacity, founders = own.population.capacity, own.population.initial_count

@@ -85,10 +85,6 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Begins a new world and a new life.
 
-        Args:
-            seed: Of the world; None for the first one, and then for seeds drawn from it.
-            options: Ignored; Gymnasium has the argument.
-
         Returns:
             The observation (entries,), and the id and the slot of the agent.
 
@@ -107,9 +103,6 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
 
     def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Advances the world by `repeat` steps.
-
-        Args:
-            action: (2,) left and right motor.
 
         Returns:
             The observation (entries,), zeros after death; what the agent was paid, whether it has died, whether its

@@ -24,10 +24,6 @@ RESET_MASK = "reset_mask"
 def loaded(config: Config | str | Path, overrides: Iterable[str]) -> Config:
     """The config itself, or that of a preset or a file with other settings.
 
-    Args:
-        config: As a caller gives it.
-        overrides: Texts `path=value`, as for `load_config`.
-
     Raises:
         ConfigError: A setting is wrong.
         ArgumentError: There are overrides of a config that is loaded already.
@@ -41,10 +37,6 @@ def loaded(config: Config | str | Path, overrides: Iterable[str]) -> Config:
 
 def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ...]:
     """The names of the species that the caller drives.
-
-    Args:
-        config: With the species.
-        species: A name, several, or None for those whose policy is `external`, or all where there are none.
 
     Raises:
         ArgumentError: There is no such species.
@@ -71,12 +63,7 @@ def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ..
 
 
 def with_callers(config: Config, names: Sequence[str]) -> Config:
-    """The config with the policy `external` for some species.
-
-    Args:
-        config: Of worlds that a program drives.
-        names: Of the species.
-    """
+    """The config with the policy `external` for some species."""
     for name in names:
         config = config.with_(f"species.{name}.learning.policy", "external")
     return config
@@ -84,9 +71,6 @@ def with_callers(config: Config, names: Sequence[str]) -> Config:
 
 def options_of(options: Any) -> dict[str, Any]:
     """What a caller gave to `reset` besides the seed.
-
-    Args:
-        options: A dictionary, or None.
 
     Raises:
         ArgumentError: It is something else.
@@ -98,11 +82,6 @@ def options_of(options: Any) -> dict[str, Any]:
 
 def world_seeds(seed: Any, worlds: int) -> tuple[int, ...]:
     """The seed of each world.
-
-    Args:
-        seed: Of the first, whose followers have the next numbers; or a list with one for each; None for a first one
-            drawn by chance.
-        worlds: How many there are.
 
     Raises:
         ArgumentError: It is neither.
@@ -121,12 +100,6 @@ def world_seeds(seed: Any, worlds: int) -> tuple[int, ...]:
 def chosen(name: str, value: Any, known: Sequence[Any], *, empty: bool = False) -> Any:
     """A value that is one of a few.
 
-    Args:
-        name: What the error calls it.
-        value: What a caller gave.
-        known: What it may be.
-        empty: Whether it may be None.
-
     Raises:
         ArgumentError: It is none of them.
     """
@@ -139,10 +112,6 @@ def chosen(name: str, value: Any, known: Sequence[Any], *, empty: bool = False) 
 
 def reset_mask(options: Any, worlds: int) -> NDArray[np.bool_]:
     """The worlds that begin again, (worlds,).
-
-    Args:
-        options: Of `reset`; None for all worlds.
-        worlds: How many there are.
 
     Raises:
         ArgumentError: There is no such option, or it is no such mask.

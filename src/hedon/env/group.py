@@ -258,11 +258,6 @@ class Group:
 def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
     """Gives actions to the agents, or refuses those of all species: arrays and worlds then are as they were.
 
-    Args:
-        engine: That steps the worlds.
-        groups: The driven agents, by the name of their species.
-        actions: Of the only group, or a dictionary of them.
-
     Raises:
         ArgumentError: One is not what it can be.
     """

@@ -145,9 +145,6 @@ class JaxEnv(Copied):
     def reset(self, key: jax.Array) -> tuple[jax.Array, State]:
         """Begins a world.
 
-        Args:
-            key: From which its seed is taken.
-
         Returns:
             The observations (slots, entries) float32, zeros where nobody lives, and the state.
         """

@@ -99,10 +99,6 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
     ) -> tuple[Values, dict[str, dict[str, Any]]]:
         """Begins again.
 
-        Args:
-            seed: Of the new world; None for the first one, and then for seeds drawn from it.
-            options: Ignored; PettingZoo has the argument.
-
         Returns:
             By the names of the founders: observations (entries,), and infos.
 
@@ -120,9 +116,6 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         self, actions: Mapping[str, NDArray[np.float32]]
     ) -> tuple[Values, dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
         """Advances by one step.
-
-        Args:
-            actions: (2,) for each agent that is told something new; the others go on as they were told last.
 
         Returns:
             By the names of all who lived before the step or live after it: observations (entries,), rewards,

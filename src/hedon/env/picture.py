@@ -31,11 +31,7 @@ class Eye:
         self._films: dict[tuple[int, int], Film] = {}
 
     def see(self, world: World) -> NDArray[np.uint8] | None:
-        """What a world looks like now: (height, width, 3), red, green, blue; None where a window shows it.
-
-        Args:
-            world: To look at.
-        """
+        """What a world looks like now: (height, width, 3), red, green, blue; None where a window shows it."""
         picture = self._picture(world)
         if self._window is None:
             return picture

@@ -120,9 +120,6 @@ class Record:
     def close(self, status: str = "finished") -> Manifest:
         """Writes all that is left and the end of the manifest; a second call changes nothing.
 
-        Args:
-            status: What became of the worlds.
-
         Returns:
             The manifest as it was saved.
 

@@ -100,21 +100,11 @@ class SlotVecEnv(VecEnv, Copied):
         return [self.worlds.render(i) for i in range(len(self.worlds.simulation.worlds))]
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """An attribute of the worlds, the same for all slots.
-
-        Args:
-            attr_name: of the worlds.
-            indices: slots that ask; None for all.
-        """
+        """An attribute of the worlds, the same for all slots."""
         return [getattr(self.worlds, attr_name)] * self._count(indices)
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Slots have no attributes of their own.
-
-        Args:
-            attr_name: of the attribute.
-            value: that it should have.
-            indices: slots that it is of.
 
         Raises:
             ArgumentError: Always.
@@ -124,24 +114,13 @@ class SlotVecEnv(VecEnv, Copied):
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
         """Slots have no methods of their own.
 
-        Args:
-            method_name: of the method.
-            method_args: its arguments.
-            indices: slots that it is of.
-            method_kwargs: its arguments by name.
-
         Raises:
             ArgumentError: Always.
         """
         raise ArgumentError(f"{method_name}: slots have no methods of their own: call those of the worlds")
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
-        """None is.
-
-        Args:
-            wrapper_class: of the wrapper.
-            indices: slots that ask; None for all.
-        """
+        """None is."""
         return [False] * self._count(indices)
 
     def _count(self, indices: Any) -> int:

@@ -22,10 +22,6 @@ def bounds(config: Config, name: str) -> tuple[NDArray[np.float32], NDArray[np.f
 
     What a channel has for limits is divided as the engine divides it, in 32 bits. What an agent holds of a store is at
     most its capacity, the largest that its gene allows where one sets it.
-
-    Args:
-        config: With the species.
-        name: Of the species.
     """
     species, layout = config.species[name], layouts(config)[name]
     capacities = [_capacity(species, layout, store) for store in species.stores]
@@ -89,23 +85,12 @@ class Spaces:
         return self._of({name: self.action_box(name, group.ids.shape) for name, group in self._groups.items()})
 
     def box_of(self, name: str, rows: tuple[int, ...] = ()) -> Any:
-        """The Box of the observations of a species.
-
-        Args:
-            name: Of the species.
-            rows: Shape before that of one agent.
-        """
+        """The Box of the observations of a species."""
         low, high = (np.broadcast_to(bound, (*rows, len(bound))) for bound in self._observed[name])
         return self._spaces.Box(low, high, dtype=np.float32)
 
     def action_box(self, name: str, rows: tuple[int, ...] = (), seed: int | None = None) -> Any:
-        """The Box of the actions of a species; without bounds where any number is an action.
-
-        Args:
-            name: Of the species.
-            rows: Shape before that of one agent.
-            seed: Of its samples.
-        """
+        """The Box of the actions of a species; without bounds where any number is an action."""
         group = self._groups[name]
         low, high = (-np.inf, np.inf) if group.open else (group.low, group.high)
         return self._spaces.Box(low, high, (*rows, len(ACTIONS)), np.float32, seed=seed)

@@ -273,9 +273,6 @@ class VectorEnv(Cloned):
 
         With `human` a window shows it instead, as each step and reset does with world 0, until somebody closes it.
 
-        Args:
-            world: Its index.
-
         Raises:
             ArgumentError: There is no such world; or pygame, which shows windows, is not installed.
         """
@@ -312,9 +309,6 @@ class VectorEnv(Cloned):
 
     def restore(self, saved: bytes) -> None:
         """Goes on from what `save` gave: as many worlds of the same config, driven in the same way.
-
-        Args:
-            saved: From an environment, not from a `hedon.Simulation`, which knows nothing of actions and rewards.
 
         Raises:
             ArgumentError: It is something else, or is damaged, or the worlds are recorded. Everything then stays as it

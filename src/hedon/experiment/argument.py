@@ -27,12 +27,6 @@ DEVICES = ("cuda",)
 def integer(name: str, value: Any, low: int, high: int) -> int:
     """A whole number within bounds; NumPy's integers are valid too.
 
-    Args:
-        name: What the error calls it.
-        value: What a caller gave.
-        low: Smallest that is allowed.
-        high: Largest that is allowed.
-
     Raises:
         ArgumentError: It is not.
     """
@@ -45,12 +39,6 @@ def integer(name: str, value: Any, low: int, high: int) -> int:
 def number(name: str, value: Any, low: float, high: float) -> float:
     """A number within bounds.
 
-    Args:
-        name: What the error calls it.
-        value: What a caller gave.
-        low: Smallest that is allowed.
-        high: Largest that is allowed.
-
     Raises:
         ArgumentError: It is not.
     """
@@ -62,10 +50,6 @@ def number(name: str, value: Any, low: float, high: float) -> float:
 
 def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
     """Seeds, one per world.
-
-    Args:
-        values: What a caller gave.
-        largest: Seed that is allowed.
 
     Raises:
         ArgumentError: It is not a list of whole numbers, it is empty or too long, or a seed is out of bounds.
@@ -82,10 +66,6 @@ def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
 def different(seeds: tuple[int, ...], place: str = "seeds") -> tuple[int, ...]:
     """The same seeds, which must differ.
 
-    Args:
-        seeds: of worlds.
-        place: what messages call them.
-
     Raises:
         ArgumentError: One appears twice.
     """
@@ -99,10 +79,6 @@ def different(seeds: tuple[int, ...], place: str = "seeds") -> tuple[int, ...]:
 
 def parse_seeds(text: str, place: str = "seeds") -> tuple[int, ...]:
     """Seeds from "7", "1-5", "1,4,7-9" or "[1, 4]".
-
-    Args:
-        text: as a user gives it.
-        place: what messages call it.
 
     Raises:
         ArgumentError: The text is not such a list, a seed is out of range, there are too many, or one appears twice.
@@ -127,10 +103,6 @@ def parse_seeds(text: str, place: str = "seeds") -> tuple[int, ...]:
 
 def folder(name: str, value: Any) -> Path:
     """A path, from a path or a text.
-
-    Args:
-        name: What the error calls it.
-        value: What a caller gave.
 
     Raises:
         ArgumentError: It is neither, or empty, or has a null character.

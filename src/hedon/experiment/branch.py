@@ -102,12 +102,7 @@ def plan_branch(
 
 
 def start_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
-    """Begins a branch that `plan_branch` planned; see `branch`.
-
-    Args:
-        plan: From `plan_branch`.
-        display: Shows progress.
-    """
+    """Begins a branch that `plan_branch` planned; see `branch`."""
     with count_interrupts() as interrupted:
         require_memory(plan.run.config, len(plan.run.seeds), plan.run.threads)
         simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.backend, plan.run.rules)

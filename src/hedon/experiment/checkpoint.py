@@ -27,12 +27,6 @@ SHOWN = 5
 def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], name: str) -> None:
     """Compares a checkpoint with the run that is to continue from it.
 
-    Args:
-        head: Of the checkpoint.
-        config: Of the run.
-        seeds: Of the run.
-        name: What errors call the checkpoint.
-
     Raises:
         RecordError: The version, a setting or the seeds differ; the message says which.
     """
@@ -62,10 +56,6 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
 
 def require_undriven(folder: Path, config: Config) -> None:
     """Refuses to go on with worlds whose agents a program told what to do.
-
-    Args:
-        folder: Of their records.
-        config: That they were run with.
 
     Raises:
         RecordError: They are such worlds.
@@ -99,12 +89,6 @@ def same_backend(backend: str | None) -> str:
 
 def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
     """Puts the worlds of a checkpoint into a simulation, and checks that they are as they were saved.
-
-    Args:
-        simulation: A new one, with the config and the seeds of the checkpoint.
-        checkpoint: The worlds. Its arrays are let go: they are views of a file, which keeps its room on the disk
-            while they live.
-        name: What errors call it.
 
     Returns:
         Where the simulation now is.

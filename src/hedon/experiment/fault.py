@@ -34,10 +34,6 @@ class FaultReplay:
 def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
     """Computes from the newest checkpoint of a run that stopped at a fault, up to the fault. Changes nothing.
 
-    Args:
-        folder: Folder of the run.
-        threads: Threads to use; 0 for all processors. Changes no result.
-
     Raises:
         RecordError: The run recorded no fault, or its checkpoint does not fit.
         ConfigError: Its config cannot be read.

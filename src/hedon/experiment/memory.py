@@ -28,13 +28,7 @@ class MemoryNeedError(HedonError):
 
 
 def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, int]:
-    """Most memory that a run needs, by purpose [byte].
-
-    Args:
-        config: What the worlds are.
-        worlds: Number of worlds.
-        threads: Threads to use; 0 for all processors.
-    """
+    """Most memory that a run needs, by purpose [byte]."""
     given = engine_input(config)
     need = _engine.memory_needed(given.settings, len(given.walls), worlds, threads)
     tables = run_tables(columns_of(config)).values()
@@ -64,11 +58,6 @@ def memory_present(limits: Sequence[str] = CONTROL_GROUP_LIMITS) -> int:
 
 def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
     """Refuses a run that does not fit.
-
-    Args:
-        config: Of all worlds.
-        worlds: How many there are.
-        threads: That run them; 0 for all processors.
 
     Raises:
         MemoryNeedError: It needs more than there is; the message says what for.

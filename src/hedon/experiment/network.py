@@ -19,11 +19,6 @@ from hedon.text import brief
 def networks_from(text: str, config: Config) -> Networks:
     """Networks from a source.
 
-    Args:
-        text: `networks.npz` of a run, or the folder of a run: then the networks of those alive in its newest checkpoint
-            that have learned.
-        config: Of the run that begins with them; only networks of its species that never learn are taken.
-
     Raises:
         NetworkError: There are none, or they do not fit the config.
         RecordError: The run cannot be read.

@@ -170,12 +170,7 @@ def _with_networks(config: Config, networks: Networks | None) -> Config:
 
 
 def default_folder(config: Config, seeds: Sequence[int]) -> Path:
-    """The default folder of a run: runs/NAME-FIDELITY-sSEEDS, with a number if that exists already.
-
-    Args:
-        config: Of the run.
-        seeds: One per world.
-    """
+    """The default folder of a run: runs/NAME-FIDELITY-sSEEDS, with a number if that exists already."""
     return free_folder(Path("runs") / "-".join((config.name, config.fidelity, seed_span(seeds))))
 
 
@@ -189,12 +184,7 @@ def seed_span(seeds: Sequence[int]) -> str:
 
 
 def free_folder(path: Path, taken: Collection[Path] = ()) -> Path:
-    """A path that does not exist and is not in `taken`: this one, or this one with a number after it.
-
-    Args:
-        path: The wanted one.
-        taken: Paths that others will use.
-    """
+    """A path that does not exist and is not in `taken`: this one, or this one with a number after it."""
     folder, number = path, 2
     while folder.exists() or folder in taken:
         folder, number = path.with_name(f"{path.name}-run{number}"), number + 1

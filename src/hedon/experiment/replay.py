@@ -18,11 +18,6 @@ from hedon.record.reader import Run, open_run
 def replay_run(folder: Path | str, threads: int = 0, display: Display | None = None) -> tuple[tuple[Finding, ...], str]:
     """Computes a run again, from its oldest checkpoint to its end, and compares.
 
-    Args:
-        folder: Folder of a run that has ended and in which nothing is wrong; it is only read.
-        threads: Threads to use; 0 for all processors.
-        display: Shows progress.
-
     Returns:
         What differs, and one sentence on what was compared.
     """

@@ -138,10 +138,6 @@ def resume(
 def make(plan: RunPlan, display: Display | None = None) -> Manifest:
     """Makes the run of a plan: begins it, goes on with it, or only reads it where it is finished.
 
-    Args:
-        plan: Of the run.
-        display: Shows progress.
-
     Raises:
         RecordError: The folder holds a run with other settings, founders or seeds.
         HedonError: As `run` and `resume`.
@@ -170,11 +166,6 @@ def is_finished(manifest: Manifest, steps: int) -> bool:
 def require_setting(folder: Path, config_digest: str, seeds: Sequence[int] | None = None) -> None:
     """Refuses a folder that holds a run of another setting.
 
-    Args:
-        folder: Which may hold a run.
-        config_digest: Of the setting.
-        seeds: That the run must have; None for any.
-
     Raises:
         RecordError: It has other settings, founders or seeds.
     """
@@ -189,10 +180,6 @@ def require_setting(folder: Path, config_digest: str, seeds: Sequence[int] | Non
 
 def continue_run(found: Resumption, display: Display | None = None) -> Manifest:
     """Continues a run that `lock` has locked; see `resume`.
-
-    Args:
-        found: From `lock`, while the folder is locked.
-        display: Shows progress.
 
     Returns:
         The manifest as it was saved at the end.

@@ -185,10 +185,6 @@ class Rule:
 def rules(config: Config, kept: Sequence[RuleSource] = ()) -> tuple[Rule, ...]:
     """The rules of a config.
 
-    Args:
-        config: That may have some.
-        kept: Texts of rules that it is pinned to, as a manifest has them. All others are read from their files.
-
     Raises:
         RuleError: A file is not there or cannot be read, or is not the one that the config was pinned to.
     """
@@ -207,12 +203,7 @@ def _rule(config: Config, name: str, use: str, source: RuleSource) -> Rule:
 
 
 def pinned(config: Config, found: Sequence[Rule]) -> Config:
-    """The config with the names and digests of its rules' files, without the folders that they are in.
-
-    Args:
-        config: Whose rules name files, by any path.
-        found: All of its rules, as `rules` gives them.
-    """
+    """The config with the names and digests of its rules' files, without the folders that they are in."""
     agents = dict(config.species)
     for rule in found:
         own = agents[rule.species]

@@ -25,11 +25,6 @@ _RETURNED = re.compile(r"setitem\(array\(float64, 1d, C\), int64, (.+)\)")
 def refusal(text: str, name: str, columns: Collection[str]) -> str:
     """What a rule does that no rule may: it writes what is not a memory, or asks for chance or the time.
 
-    Args:
-        text: Of the file, which Python can read.
-        name: Of the rule in it; what it does not reach by names of the file is not judged.
-        columns: Names of the fields of an agent.
-
     Returns:
         The line and what is wrong there; empty if nothing is.
     """
@@ -55,9 +50,6 @@ def refusal(text: str, name: str, columns: Collection[str]) -> str:
 
 def unpinned(text: str) -> str:
     """What a rule takes from elsewhere that no run keeps, or under names that cannot be judged.
-
-    Args:
-        text: Of the file.
 
     Returns:
         The line and what is wrong there; empty if nothing is.
@@ -109,12 +101,7 @@ def _is_installed(module: str) -> bool:
 
 
 def failure(error: BaseException, file: str) -> str:
-    """Why Python cannot read the file of a rule, or why it fails there.
-
-    Args:
-        error: That was raised.
-        file: As its code has it.
-    """
+    """Why Python cannot read the file of a rule, or why it fails there."""
     line, said = None, brief(repr(error))
     if isinstance(error, SyntaxError):
         line, said = error.lineno, f"{type(error).__name__}: {error.msg}"
@@ -126,12 +113,7 @@ def failure(error: BaseException, file: str) -> str:
 
 
 def cause(error: BaseException, file: str) -> str:
-    """Why Numba cannot compile a rule, without the ways by which it found out.
-
-    Args:
-        error: That it raised.
-        file: As the code of the rule has it.
-    """
+    """Why Numba cannot compile a rule, without the ways by which it found out."""
     text = str(error)
     own = re.findall(rf'File "(?:[^"]*/)?{re.escape(file)}", line (\d+)|\b{re.escape(file)} \((\d+)\)', text)
     returned = _RETURNED.search(text)

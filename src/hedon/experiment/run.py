@@ -58,10 +58,6 @@ def run(plan: RunPlan, display: Display | None = None) -> Manifest:
 def set_initial_state(simulation: Simulation, plan: RunPlan) -> None:
     """Gives the founders of a new simulation the genomes and the networks that the plan has for them.
 
-    Args:
-        simulation: At step 0.
-        plan: With its founders and networks; a plan without them changes nothing.
-
     Raises:
         FounderError: The founders do not fit the simulation.
         NetworkError: The networks do not.
@@ -81,14 +77,6 @@ def start_run(
     interrupted: Interrupts,
 ) -> Manifest:
     """Locks and makes the folder of a run, and runs it; see `run`.
-
-    Args:
-        simulation: That is where `start` says.
-        plan: What to run, and where its records go.
-        manifest: From `first_manifest`.
-        start: At step 0, or for a branch at a later one.
-        display: Shows progress.
-        interrupted: Counts the signals to stop.
 
     Returns:
         The manifest as it was saved at the end.
@@ -121,15 +109,6 @@ def advance(
     interrupted: Interrupts,
 ) -> Manifest:
     """Advances a simulation to the end of its plan, or until it is interrupted or extinct, and records it; see `run`.
-
-    Args:
-        simulation: That is where `start` says.
-        plan: With the total number of steps.
-        manifest: Of the session that begins.
-        writer: Open on the run's folder, with the parts up to `start`.
-        start: Step, seconds and samples that the run goes on from.
-        display: Shows progress.
-        interrupted: Counts the signals to stop: one after the current window, two at once.
 
     Returns:
         The manifest as it was saved at the end.

@@ -76,11 +76,7 @@ def first_manifest(plan: Planned, simulation: Simulation, from_step: int = 0) ->
 
 
 def channel_notes(config: Config) -> Iterator[ChannelNote]:
-    """What agents of each species observe beside rays and touch, are paid for, and have a gate by.
-
-    Args:
-        config: with the species.
-    """
+    """What agents of each species observe beside rays and touch, are paid for, and have a gate by."""
     for species, layout in layouts(config).items():
         for each in layout.observed:
             yield ChannelNote(species, "observed", each.name, "", each.scale, each.unit, each.meaning)

@@ -25,11 +25,6 @@ def index_table(agents: pl.DataFrame, now: int, points: int) -> pl.DataFrame:
     Each agent is a taxon; edges lead from parents to children and have the length 1. Ancestors are kept as long as a
     descendant lives.
 
-    Args:
-        agents: table `agents` of one world, by agent_id, without gaps.
-        now: the last step.
-        points: how many times, the last at `now`.
-
     Returns:
         step; living; phylogenetic_diversity, the edges of the tree of the living (Faith 1992), families of different
         founders joined by one edge each; mean_pairwise_distance, edges between two of the living, over pairs with a

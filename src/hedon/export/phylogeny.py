@@ -29,11 +29,6 @@ class Subtree(NamedTuple):
 def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> pl.DataFrame:
     """The agents of one world, by agent_id.
 
-    Args:
-        run: the run.
-        seed: of the world; needed where there are several.
-        species: only these; by default all, whose trees stand side by side.
-
     Returns:
         The table `agents`; of a branch, those who lived when it began are roots unless their parents did too.
 
@@ -69,12 +64,7 @@ def _rooted(agents: pl.DataFrame, begin: int) -> pl.DataFrame:
 
 
 def last_step(run: Run, agents: pl.DataFrame) -> int:
-    """The step up to which a pedigree reaches: the end of its world, or its last event if the run has not ended.
-
-    Args:
-        run: with its manifest.
-        agents: table `agents` of one of its worlds.
-    """
+    """The step up to which a pedigree reaches: the end of its world, or its last event if the run has not ended."""
     done = run.manifest.steps_done[run.manifest.seeds.index(agents["seed"][0])]
     events = agents.select(pl.max_horizontal(pl.col("birth_step").max(), pl.col("death_step").max())).item()
     return max(done, events)
@@ -82,10 +72,6 @@ def last_step(run: Run, agents: pl.DataFrame) -> int:
 
 def alife_table(agents: pl.DataFrame, genes: tuple[str, ...]) -> pl.DataFrame:
     """The pedigree in the ALife data standard for phylogenies (Lalejini et al. 2019).
-
-    Args:
-        agents: table `agents` of one world.
-        genes: columns to keep.
 
     Returns:
         `id`; `ancestor_list`, "[NONE]" for founders, with both parents where there are two; `origin_time` and
@@ -111,10 +97,6 @@ def newick(agents: pl.DataFrame, now: int) -> bytes:
     parent's further life. Births of whose two branches one has died out are left out. Lengths are in steps, so that all
     tips of a tree lie at `now`; the length of a root is the time from its founder's birth to the first fork.
 
-    Args:
-        agents: table `agents` of one world, by agent_id, without gaps.
-        now: the last step.
-
     Raises:
         ExportError: children have two parents, so that there is no tree; or nobody lives.
     """
@@ -135,12 +117,6 @@ def newick(agents: pl.DataFrame, now: int) -> bytes:
 
 def picture(agents: pl.DataFrame, now: int, genes: tuple[str, ...], gene: str | None) -> bytes:
     """The tree of the living as a picture (PNG), colored by a gene; see `hedon.figure.tree`.
-
-    Args:
-        agents: table `agents` of one world, by agent_id, without gaps.
-        now: the last step.
-        genes: columns of the genome.
-        gene: one of them; None for the first that these agents have.
 
     Raises:
         ExportError: there is no such gene, or children have two parents, so that there is no tree.

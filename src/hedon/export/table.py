@@ -22,10 +22,6 @@ class ExportError(HedonError):
 def table_of(run: Run, name: TableName) -> pl.LazyFrame:
     """A table of all worlds of a run.
 
-    Args:
-        run: whose records are read.
-        name: of the table.
-
     Raises:
         ExportError: the run has no frames.
         RecordError: a part of the table is damaged.
@@ -41,12 +37,6 @@ def table_of(run: Run, name: TableName) -> pl.LazyFrame:
 
 def write_table(table: pl.LazyFrame, file_format: TableFormat, out: Path) -> None:
     """Writes a table as one file, piece by piece, so that it may be larger than memory.
-
-    Args:
-        table: of a run.
-        file_format: csv (UTF-8, with a header; what is missing is empty), parquet, or arrow (IPC file, which is Feather
-            too).
-        out: the file, which must not be there.
 
     Raises:
         ExportError: the file is there already, or cannot be written.
@@ -65,10 +55,6 @@ def write_table(table: pl.LazyFrame, file_format: TableFormat, out: Path) -> Non
 
 def write_new(out: Path, write: Callable[[BinaryIO], object]) -> None:
     """Writes a file that is not there yet, whole or not at all.
-
-    Args:
-        out: the file.
-        write: writes its content into an open file.
 
     Raises:
         ExportError: it is there already, or cannot be written.

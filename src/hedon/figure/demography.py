@@ -23,12 +23,7 @@ _LINEAR_SCALE = (1.0 - 1.0 / 10.0) / math.log(10.0)
 
 
 def draw_demography(own: SpeciesConfig, populations: list[pl.DataFrame]) -> Figure:
-    """R0 and mean life at constant energy; shaded, where the living were in the last tenth of the runs.
-
-    Args:
-        own: the settings of the species.
-        populations: tables `population` of the worlds; none where there was no run.
-    """
+    """R0 and mean life at constant energy; shaded, where the living were in the last tenth of the runs."""
     energy = _energies(own)
     lifetime = expected_lifetime(mean_hazard(own), energy)
     finite = lifetime[np.isfinite(lifetime)]
@@ -53,10 +48,6 @@ def draw_demography(own: SpeciesConfig, populations: list[pl.DataFrame]) -> Figu
 
 def draw_reproduction(axes: Axes, own: SpeciesConfig) -> Line2D:
     """Draws R0 at constant energy, and the line R0 = 1 at which a lineage keeps its size.
-
-    Args:
-        axes: to draw on.
-        own: the settings of the species.
 
     Returns:
         The line R0 = 1, with its label, for the legend.

@@ -20,11 +20,6 @@ def draw_lineages(lines: pl.DataFrame, titles: Mapping[str, str], colors: Mappin
     Thick: mean weight over these lines; thin and gray: over all alive at that time. Both are means over
     worlds, the band is the lines' 95 % interval. Time is counted back from the end, since lines are the fewer
     the further one looks back.
-
-    Args:
-        lines: table `lineage` of one condition.
-        titles: per weight, in the order of the panels.
-        colors: per weight.
     """
     if lines.is_empty():
         return draw_message("no agents recorded")

@@ -14,13 +14,7 @@ _POINTS = 100  # few enough that chance does not hide the course
 
 
 def draw_population(population: pl.DataFrame, meals: Sequence[str], colors: Mapping[str, str]) -> Figure:
-    """Six panels: alive, births and deaths, failed births, energy, what is eaten, generation.
-
-    Args:
-        population: table `population` of one species.
-        meals: names of the kinds of food, and of the species, that it eats.
-        colors: per meal.
-    """
+    """Six panels: alive, births and deaths, failed births, energy, what is eaten, generation."""
     rows = history(population, meals, points=_POINTS)
     with styled():
         figure = new_figure(8.6, 4.9)

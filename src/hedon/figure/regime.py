@@ -12,11 +12,7 @@ _NAMED_WORLDS = 24  # rows that still have room for their seed
 
 
 def draw_regimes(regimes: pl.DataFrame) -> Figure:
-    """A row of colors per world, over time.
-
-    Args:
-        regimes: table `regime_time` of one condition.
-    """
+    """A row of colors per world, over time."""
     seeds = regimes["seed"].unique(maintain_order=True).to_list() if regimes.height else []
     if not seeds:
         return draw_message("nothing recorded yet")

@@ -23,12 +23,6 @@ def draw_selection(
 
     Points with bars are means over worlds with their 95 % interval; with too few worlds for one, the worlds themselves.
     Hollow points stand for cohorts that have not all died.
-
-    Args:
-        windows: table `selection_window` of one condition.
-        worlds: table `selection_world` of the same condition.
-        titles: per weight, in the order of the panels.
-        colors: per weight.
     """
     if worlds.is_empty():
         return draw_message("nothing recorded yet")

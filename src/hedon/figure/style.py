@@ -146,13 +146,7 @@ def step_unit(last_step: float) -> tuple[float, str]:
 
 
 def head(axes: Axes, title: str, remark: str = "") -> None:
-    """Writes a title above axes and, smaller and below it, what else must be known; nothing where both are empty.
-
-    Args:
-        axes: to write above.
-        title: one line.
-        remark: one line or more.
-    """
+    """Writes a title above axes and, smaller and below it, what else must be known; nothing where both are empty."""
     lines = remark.count("\n") + 1 if remark else 0
     if title:
         axes.set_title(title, pad=8.0 + 11.0 * lines)
@@ -162,12 +156,7 @@ def head(axes: Axes, title: str, remark: str = "") -> None:
 
 
 def legend_above(axes: Axes, columns: int = 2) -> None:
-    """Adds a legend to axes of the height of a panel, and room for it above all that is drawn.
-
-    Args:
-        axes: with everything drawn.
-        columns: of the legend.
-    """
+    """Adds a legend to axes of the height of a panel, and room for it above all that is drawn."""
     legend = axes.legend(loc="upper left", ncols=columns, borderaxespad=0.2)
     rows = -(-len(legend.get_texts()) // columns)
     low, high = axes.get_ylim()
@@ -175,14 +164,7 @@ def legend_above(axes: Axes, columns: int = 2) -> None:
 
 
 def wrapped_legend(figure: Figure, handles: Sequence[Artist], columns: int, **options: Any) -> Legend:
-    """Adds a legend to a figure, in as few rows as fit its width.
-
-    Args:
-        figure: that has its width.
-        handles: of the legend, with labels.
-        columns: the most that lie side by side.
-        options: as those of `Figure.legend`.
-    """
+    """Adds a legend to a figure, in as few rows as fit its width."""
     rows = -(-len(handles) // columns)
     while True:
         columns = -(-len(handles) // rows)

@@ -17,10 +17,6 @@ def draw_survival(points: pl.DataFrame, lifetimes: pl.DataFrame) -> Figure:
 
     On the logarithmic scale a constant chance of death is a straight line, and one that rises with age bends
     it downward. Dashed: the curve of an agent whose chance of death is that of the whole world at any age.
-
-    Args:
-        points: table `survival` of one condition.
-        lifetimes: table `lifetime_world` of the same condition.
     """
     if points.is_empty():
         return draw_message("nobody died")

@@ -67,10 +67,6 @@ def draw_traces(
 def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Mean over worlds at each time.
 
-    Args:
-        history: a row per world and bin of time, with the columns bin and step.
-        column: what is averaged; null is left out.
-
     Returns:
         Step, mean, and lower and upper bound of its 95 % interval (NaN for fewer than five worlds), each
         (bins,).

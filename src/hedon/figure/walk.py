@@ -74,11 +74,6 @@ def draw_walk_ends(law: MutationLaw, births: int, rng: np.random.Generator) -> F
 def unlimited_share(law: MutationLaw, length: int, edges: Floats) -> Floats:
     """What share of lines would end in each bin if nothing were clipped, by the density at its middle.
 
-    Args:
-        law: of founding and mutation, with Cauchy noise.
-        length: number of mutations.
-        edges: bounds of the bins, ascending, (bins + 1,).
-
     Returns:
         Shares, (bins,).
     """

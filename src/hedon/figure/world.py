@@ -77,10 +77,6 @@ def telling_agent(snapshot: Snapshot) -> int | None:
 def ray_segments(snapshot: Snapshot, index: int) -> tuple[np.ndarray, np.ndarray]:
     """The rays of one agent, from the surface of its body to what they hit or to their end.
 
-    Args:
-        snapshot: the state.
-        index: of the agent in the snapshot.
-
     Returns:
         Segments [u], shape (rays, 2, 2), and the type hit per ray, shape (rays,), −1 where nothing is hit.
     """
@@ -178,13 +174,7 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
 
 
 def draw_ring(axes: Axes, snapshot: Snapshot, index: int) -> None:
-    """Draws a ring around the agent at this index of the snapshot.
-
-    Args:
-        axes: to draw on.
-        snapshot: with the agents.
-        index: of the agent in the snapshot.
-    """
+    """Draws a ring around the agent at this index of the snapshot."""
     center = np.array([[snapshot.x[index], snapshot.y[index]]])
     radius = float(snapshot.of_agents("radius")[index]) + 1.5
     _discs(axes, center, radius, facecolors="none", edgecolors=INK, linewidths=1.4)

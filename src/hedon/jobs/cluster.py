@@ -28,12 +28,6 @@ _LOOK_SECONDS = 0.5
 def make_on_ray(jobs: Sequence[T], address: str, display: JobListener[T], workers: int = 0) -> dict[Path, Outcome]:
     """Makes jobs on a cluster; one processor each. Ctrl-C ends it after the current windows.
 
-    Args:
-        jobs: In the order in which they begin; all nodes reach the folders or stores where they live.
-        address: Of the cluster, or `LOCAL`.
-        display: Shows how each job ends.
-        workers: Processors of a local cluster; 0 for all.
-
     Returns:
         How each job ended, by its run's folder; jobs that never began are missing.
 

@@ -23,10 +23,6 @@ def lock(store: Store, part: tuple[int, int]) -> Iterator[None]:
     Nothing is locked behind a URL: object stores have no locks that end with a process. There, two that make the same
     batches write the same rows, so they lose time alone.
 
-    Args:
-        store: where the jobs live.
-        part: number, from 1 on, and count.
-
     Raises:
         JobError: another process makes jobs of this part.
         RecordError: the folder cannot be written.

@@ -16,13 +16,6 @@ def make_jobs(
 ) -> dict[Path, Outcome]:
     """Makes jobs, each in a process of its own; those whose runs are begun go on.
 
-    Args:
-        jobs: In the order in which they begin.
-        display: Shows every moment, and how each job ends.
-        threads: To use in total; 0 for all processors. On a cluster with an address, each job has one.
-        ray: Address of a Ray cluster whose nodes share the folders of the runs, `cluster.LOCAL` for one that is started
-            here; None for this machine.
-
     Returns:
         How each job ended, by its run's folder; jobs that never began are missing.
 

@@ -47,21 +47,11 @@ class JobListener(Protocol[T_contra]):
     """What hears how several runs go on and end, such as a display of their progress."""
 
     def update(self, job: T_contra, moment: Moment) -> None:
-        """Shows a moment of a run; called about five times a second for each.
-
-        Args:
-            job: that goes on.
-            moment: how far it is.
-        """
+        """Shows a moment of a run; called about five times a second for each."""
         ...
 
     def end(self, job: T_contra, outcome: Outcome) -> None:
-        """Shows how a run ended.
-
-        Args:
-            job: that ended.
-            outcome: how it ended.
-        """
+        """Shows how a run ended."""
         ...
 
 
@@ -70,11 +60,6 @@ def make_here(jobs: Sequence[T], threads: int, display: JobListener[T]) -> dict[
 
     Ctrl-C or SIGTERM ends every run after its current window, a second one immediately; jobs that have not begun are
     not run. A run that fails does not end the others.
-
-    Args:
-        jobs: in the order in which they begin.
-        threads: to use in total.
-        display: shows every moment, and how each run ends.
 
     Returns:
         How each job ended, by its run's folder; jobs that never began are missing.
@@ -103,13 +88,7 @@ def make_here(jobs: Sequence[T], threads: int, display: JobListener[T]) -> dict[
 
 
 def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> int:
-    """How many threads the next job begins with: those it wants; the last job gets all free ones; 0 if it must wait.
-
-    Args:
-        waiting: the jobs that have not begun, in order.
-        taken: threads of the current runs.
-        threads: to use in total.
-    """
+    """How many threads the next job begins with: those it wants; the last job gets all free ones; 0 if it must wait."""
     if not waiting:
         return 0
     free, needed = threads - sum(taken), min(waiting[0].threads, threads)

@@ -48,12 +48,9 @@ class RunRequirement:
 
 
 def part_of(requirements: Sequence[RunRequirement], part: tuple[int, int]) -> list[RunRequirement]:
-    """The share of some worlds that one of several machines makes.
+    """The share of some worlds that one of several machines makes: every N-th world, from the I-th on.
 
-    Args:
-        requirements: of all worlds.
-        part: number, from 1 on, and count of parts into which worlds are dealt out in turn. Folders of named runs have
-            the number in their names, so that machines do not meet in one.
+    Folders of named runs have the part's number in their names, so that machines do not meet in one.
     """
     number, count = part
     if count == 1:
@@ -78,10 +75,6 @@ def setting_name(config: Config) -> str:
 
 def find_runs(folder: Path, wanted: Iterable[RunRequirement]) -> tuple[list[Run], list[str]]:
     """The runs in a folder that hold worlds of the settings that are needed, from their beginning on.
-
-    Args:
-        folder: whose subfolders are searched.
-        wanted: settings with their seeds.
 
     Returns:
         The runs by name, and what is wrong with folders that hold a run that cannot be read, and may be needed.
@@ -108,10 +101,6 @@ def find_runs(folder: Path, wanted: Iterable[RunRequirement]) -> tuple[list[Run]
 
 def read_required(wanted: Iterable[RunRequirement], runs: Iterable[Run]) -> dict[tuple[str, int, str], WorldRecord]:
     """The worlds that are needed, as far as some runs have them and their records reach.
-
-    Args:
-        wanted: settings with their seeds.
-        runs: that may have them; of two worlds that are equally long the first is kept.
 
     Returns:
         Per setting's digest, seed and species; a world may be longer than it need be.

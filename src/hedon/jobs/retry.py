@@ -24,12 +24,7 @@ class RetryLimit:
         return count < TRIES
 
     def reason(self, job: Job, error: Exception) -> str:
-        """Why a job is given up: which worlds, what was seen last, and what to do.
-
-        Args:
-            job: That was lost.
-            error: The last time.
-        """
+        """Why a job is given up: which worlds, what was seen last, and what to do."""
         first = str(error).strip().partition("\n")[0]
         return (
             f"its process was lost {TRIES} times in a row without a new checkpoint, the last time with: {first} Its "

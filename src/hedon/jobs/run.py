@@ -49,10 +49,5 @@ class RunJob:
         return f"{self.plan.config.name}, seed {', '.join(map(str, self.plan.seeds))}"
 
     def make(self, threads: int, display: Display | None) -> str:
-        """Begins, continues, or only reads the run; see `hedon.experiment.resume.make`.
-
-        Args:
-            threads: that the run may use.
-            display: shows progress.
-        """
+        """Begins, continues, or only reads the run; see `hedon.experiment.resume.make`."""
         return make(replace(self.plan, threads=threads), display).status

@@ -71,10 +71,6 @@ class Store:
     def write(self, name: str, content: bytes) -> None:
         """Writes a content, whole or not at all; the last one of several counts.
 
-        Args:
-            name: Of the content.
-            content: All of it.
-
         Raises:
             JobError: It cannot be written.
         """
@@ -110,9 +106,6 @@ class Store:
 
     def read_all(self, names: Sequence[str]) -> list[bytes | None]:
         """Several contents, in their order, `READERS` at a time: each answer of a store takes a while.
-
-        Args:
-            names: Of the contents.
 
         Raises:
             JobError: One cannot be read.

@@ -59,10 +59,6 @@ class Job(Protocol):
     def make(self, threads: int, display: Display | None) -> str:
         """Begins, continues, or only reads its run.
 
-        Args:
-            threads: that the job may use.
-            display: shows progress.
-
         Returns:
             The status of an `Outcome`.
 
@@ -107,11 +103,6 @@ def work(job: Job, threads: int, link: Connection) -> None:
 
     The process leaves the terminal: Ctrl-C reaches only the parent, which passes it on by the pipe as soon as the run
     counts signals. The process starts with signals blocked and unblocks them here, so none ends it directly.
-
-    Args:
-        job: to do.
-        threads: for it.
-        link: to the parent.
     """
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
@@ -140,13 +131,7 @@ def _listen(link: Connection) -> None:
 
 
 def attempt(job: Job, threads: int, display: Display | None = None) -> Outcome:
-    """Does a job in this process. A fault of the job is an outcome.
-
-    Args:
-        job: what to do.
-        threads: that it may use.
-        display: shows progress.
-    """
+    """Does a job in this process. A fault of the job is an outcome."""
     try:
         return Outcome(job.make(threads, display))
     except HedonError as error:

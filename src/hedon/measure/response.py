@@ -95,10 +95,5 @@ def _readable(curve: SurvivalCurve, trusted: float, until: float) -> bool:
 
 
 def measured(world: WorldRecord, measures: Sequence[Measure]) -> dict[str, float | None]:
-    """The measures of one world, by name.
-
-    Args:
-        world: A world with its agents.
-        measures: Which of them to compute.
-    """
+    """The measures of one world, by name."""
     return {measure.name: measure.value(world) for measure in measures}

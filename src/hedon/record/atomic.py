@@ -23,10 +23,6 @@ def write_atomically(path: Path, write: Callable[[BinaryIO], object]) -> None:
     If the file system allows it, the file has no name while it is written: a process that is killed leaves nothing
     behind. Several processes may write the same file; the content of the last one stays.
 
-    Args:
-        path: the file; its folder must exist. An existing file is replaced.
-        write: called with the open binary file, to fill it.
-
     Raises:
         OSError: as the file system raises it; `path` is then as before, and no other file is left.
     """
@@ -67,9 +63,6 @@ def _give_name(descriptor: int, path: Path) -> None:
 
 def read_whole(path: Path) -> bytes:
     """The content of a file that `write_atomically` may replace at any time, in one read.
-
-    Args:
-        path: the file.
 
     Raises:
         OSError: as the file system raises it.

@@ -86,11 +86,6 @@ class Checkpoint:
 def save_checkpoint(folder: Path, head: CheckpointHead, fill: Fill) -> None:
     """Writes a checkpoint of a run atomically, then removes all but the newest ones.
 
-    Args:
-        folder: of the run.
-        head: of the checkpoint.
-        fill: writes the arrays.
-
     Raises:
         OSError: as the file system raises it; the earlier checkpoints are then unchanged.
     """
@@ -101,11 +96,6 @@ def save_checkpoint(folder: Path, head: CheckpointHead, fill: Fill) -> None:
 
 def write_checkpoint(path: Path, head: CheckpointHead, fill: Fill) -> None:
     """Writes one checkpoint atomically; makes its folder if it is missing.
-
-    Args:
-        path: of the file.
-        head: of the checkpoint.
-        fill: writes the arrays.
 
     Raises:
         OSError: as the file system raises it.

@@ -21,10 +21,6 @@ def records_digest(folder: Path, columns: Columns) -> str:
     The rows of each world count in the order in which they were written, which is the same in every repetition of a
     run. The order of rows of different worlds, and the ends of parts, can differ between repetitions and do not count.
 
-    Args:
-        folder: of the run.
-        columns: of its tables.
-
     Raises:
         RecordError: a part cannot be read.
     """

@@ -88,23 +88,12 @@ def require_no_run(folder: Path) -> None:
 
 
 def part_path(folder: Path, table: str, index: int) -> Path:
-    """The path of one part of a table.
-
-    Args:
-        folder: of the run.
-        table: its name.
-        index: of the part, from 0 on.
-    """
+    """The path of one part of a table."""
     return folder / table / f"part-{index:06d}.parquet"
 
 
 def part_paths(folder: Path, table: str) -> list[Path]:
-    """The finished parts of a table, in the order in which they were written.
-
-    Args:
-        folder: of the run.
-        table: its name.
-    """
+    """The finished parts of a table, in the order in which they were written."""
     return sorted((folder / table).glob("part-*.parquet"))
 
 
@@ -125,10 +114,5 @@ def misplaced_checkpoints(folder: Path) -> list[Path]:
 
 
 def checkpoint_paths(folder: Path, place: str = CHECKPOINTS) -> list[Path]:
-    """The checkpoints of a run, by step.
-
-    Args:
-        folder: of the run.
-        place: `CHECKPOINTS`, or `FAULT` for the one of a run that stopped at a fault.
-    """
+    """The checkpoints of a run, by step."""
     return sorted(path for path in (folder / place).glob("step-??????????.npz") if path.is_file())

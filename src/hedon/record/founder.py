@@ -178,13 +178,7 @@ def make_founders(
 
 
 def join(tables: Sequence[Founders], labels: Sequence[str], shares: Sequence[float]) -> Founders:
-    """One table from several, each of which becomes one group; a gene that one lacks is drawn from the config's law.
-
-    Args:
-        tables: one or more.
-        labels: a name for the group of each.
-        shares: of each group among the founders, in any unit.
-    """
+    """One table from several, each of which becomes one group; a gene that one lacks is drawn from the config's law."""
     genes = tuple(dict.fromkeys(gene for table in tables for gene in table.genes))
     values, group = [], []
     for table, label in zip(tables, labels, strict=True):
@@ -201,11 +195,6 @@ def column_of(config: Config, name: str, own: str | None = None) -> str | None:
 
     `food` is the first kind, unless a kind has this name. A gene of only one species begins with the name of the
     species, as in `prey.action`.
-
-    Args:
-        config: that has the gene, or not.
-        name: as a user gives it.
-        own: only of this species; None for the columns of all.
     """
     species, dot, gene = name.rpartition(".")
     if dot:
@@ -219,13 +208,7 @@ def _column_among(columns: Sequence[str], name: str) -> str | None:
 
 
 def unknown_gene(config: Config, name: str, own: str | None = None) -> str:
-    """Says that there is no such gene, which there are, and which is near.
-
-    Args:
-        config: that lacks the gene.
-        name: as a user gave it; of one species where it begins with the name of one.
-        own: only genes of this species count; None for those of all.
-    """
+    """Says that there is no such gene, which there are, and which is near."""
     species, dot, gene = name.rpartition(".")
     begin = f"{species}." if dot and species in config.species else ""
     own = species if begin else own

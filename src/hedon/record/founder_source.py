@@ -22,11 +22,6 @@ _HELP = "give a table (.csv), RUN@STEP, the folder of a run, or a point such as 
 def read_founders(text: str, config: Config) -> Founders:
     """Founders from a source, or from several with shares.
 
-    Args:
-        text: `table.csv`; `RUN@STEP` for those alive at a step of a run; `RUN` for those alive at its end;
-            `food=5,action=0` for a point. Several are joined by commas, each with `:SHARE` or none with it.
-        config: Of the run that begins with them.
-
     Raises:
         FounderError: A source is none, or cannot be used; the message says why.
         RecordError: A run cannot be read.
@@ -47,10 +42,6 @@ def read_founders(text: str, config: Config) -> Founders:
 
 def read_source(text: str, config: Config) -> Founders:
     """Founders from one source; see `read_founders`.
-
-    Args:
-        text: a table (.csv), a point (GENE=VALUE,…), RUN or RUN@STEP.
-        config: that the founders are for.
 
     Raises:
         FounderError: There is no such source, or it does not fit the config.
@@ -143,10 +134,6 @@ def source_label(text: str) -> str:
 
 def parse_point(text: str, config: Config) -> dict[str, float]:
     """Genes and their values from a text such as "food=5,action=0", by column.
-
-    Args:
-        text: GENE=VALUE, with commas between several.
-        config: that has the genes.
 
     Raises:
         FounderError: A gene is unknown or given twice, or a value is not allowed.

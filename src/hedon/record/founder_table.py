@@ -21,11 +21,6 @@ MAX_BYTES = 100_000_000
 def read_table(path: Path, config: Config) -> Founders:
     """Reads a table of founders from a CSV file.
 
-    Args:
-        path: Of the file. Its first line names the columns: genes, by their column in the records or by their short
-            name, and `group` and `share` if there are any. An empty cell is a gene that is drawn from the config's law.
-        config: Whose genes they are.
-
     Raises:
         FounderError: The table cannot be used; the message gives the place, the value and what is allowed.
     """
@@ -71,10 +66,6 @@ def read_table(path: Path, config: Config) -> Founders:
 
 def load_founders(folder: Path, config: Config) -> Founders | None:
     """The table of a run, from its folder; None if its founders are drawn from the config's laws.
-
-    Args:
-        folder: of the run.
-        config: of the run, which has the table's digest.
 
     Raises:
         FounderError: The table is missing or was changed.

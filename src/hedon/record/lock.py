@@ -106,10 +106,6 @@ def one_writer(folder: Path, what: str) -> Iterator[None]:
 
     No file is left in it.
 
-    Args:
-        folder: made if it is missing.
-        what: is written, for the message.
-
     Raises:
         RecordError: what is written within cannot be, for whatever reason the file system gives.
     """

@@ -241,10 +241,6 @@ class Manifest:
 def save_manifest(folder: Path, manifest: Manifest) -> None:
     """Writes the manifest atomically.
 
-    Args:
-        folder: of the run.
-        manifest: what to write.
-
     Raises:
         RecordError: it cannot be written.
     """

@@ -115,10 +115,6 @@ def fixed_species(config: Config) -> list[str]:
 def load_networks(folder: Path, config: Config) -> Networks | None:
     """The networks that a run began with, from its folder; None if it began with new ones.
 
-    Args:
-        folder: of the run.
-        config: of the run, which has the digest of the networks.
-
     Raises:
         NetworkError: They are missing, damaged, or not those that the config names.
     """

@@ -21,10 +21,6 @@ _UNREADABLE = (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError,
 def load_part(path: Path, table: Table | None = None) -> pl.DataFrame:
     """The rows of a file as they are, with the table's columns, or with all that it has.
 
-    Args:
-        path: of the file.
-        table: its schema; None for all columns.
-
     Raises:
         RecordError: it cannot be read; the message names it.
     """
@@ -36,11 +32,6 @@ def load_part(path: Path, table: Table | None = None) -> pl.DataFrame:
 def read_part(path: Path, table: Table, manifest: Manifest) -> pl.DataFrame:
     """The rows of a file, which no reader stumbles over.
 
-    Args:
-        path: of the file.
-        table: its schema.
-        manifest: of the run, which values are compared with.
-
     Raises:
         RecordError: it cannot be read, or it holds what no run writes; the message names it.
     """
@@ -49,11 +40,6 @@ def read_part(path: Path, table: Table, manifest: Manifest) -> pl.DataFrame:
 
 def read_living(path: Path, table: Table, manifest: Manifest) -> tuple[pl.DataFrame, int | None]:
     """The living, and how many parts hold the deaths before that moment; None for all existing parts.
-
-    Args:
-        path: of the file.
-        table: the schema of `agents`.
-        manifest: of the run, which values are compared with.
 
     Raises:
         RecordError: as `read_part`.
@@ -67,13 +53,7 @@ def read_living(path: Path, table: Table, manifest: Manifest) -> tuple[pl.DataFr
 
 
 def value_faults(rows: pl.DataFrame, table: Table, manifest: Manifest | None) -> Iterator[str]:
-    """What no run writes: other types, values that are missing, not finite or out of range, unknown names.
-
-    Args:
-        rows: with all columns of the table.
-        table: the schema.
-        manifest: of the run, which has its worlds and its steps; None if it cannot be read.
-    """
+    """What no run writes: other types, values that are missing, not finite or out of range, unknown names."""
     most = {} if manifest is None else {"world": len(manifest.seeds) - 1, "step": manifest.steps_asked}
     other = [column for column, dtype in table.polars_schema.items() if rows.schema[column] != dtype]
     if other:

@@ -38,12 +38,7 @@ class PartWriter:
         self.parts = {name: list((parts or {}).get(name, ())) for name in tables}
 
     def append(self, table: str, rows: pl.DataFrame) -> None:
-        """Adds rows to the buffer; writes a part if there are enough.
-
-        Args:
-            table: its name.
-            rows: with the table's columns.
-        """
+        """Adds rows to the buffer; writes a part if there are enough."""
         self._waiting[table].append(rows)
         self._rows[table] += rows.height
         if self._rows[table] >= self.part_rows:

@@ -22,10 +22,6 @@ from hedon.text import command_word
 def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint | None, list[str]]:
     """The newest undamaged checkpoint of a run, or the one of a given step.
 
-    Args:
-        folder: of the run.
-        step: of the checkpoint; None for the newest.
-
     Returns:
         The checkpoint, or None for a run that was killed before its first; and messages about damaged ones.
 
@@ -55,10 +51,6 @@ def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint |
 def verify_parts(folder: Path, parts: Mapping[str, Sequence[str]]) -> None:
     """Compares the parts on disk with those that a checkpoint lists.
 
-    Args:
-        folder: of the run.
-        parts: by table, the SHA-256 of each part in order, in hexadecimal digits.
-
     Raises:
         RecordError: a part is missing or its content was changed.
     """
@@ -82,11 +74,6 @@ def _remedy(folder: Path) -> str:
 
 def roll_back(folder: Path, parts: Mapping[str, Sequence[str]], step: int) -> None:
     """Removes everything later than a checkpoint: parts, checkpoints, a fault, and files that were not completed.
-
-    Args:
-        folder: of the run.
-        parts: those to keep, as a checkpoint lists them.
-        step: of that checkpoint.
 
     Raises:
         RecordError: a file cannot be removed.

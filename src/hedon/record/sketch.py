@@ -30,13 +30,7 @@ def status_line(manifest: Manifest) -> str:
 
 
 def run_html(title: str, manifest: Manifest, population: pl.DataFrame) -> str:
-    """A table with a row per world and species, and a figure of the numbers alive.
-
-    Args:
-        title: stands above; any text, which is escaped.
-        manifest: of the run.
-        population: table `population`.
-    """
+    """A table with a row per world and species, and a figure of the numbers alive."""
     several = manifest.columns.several
     named = "<th>species</th>" if several else ""
     head = f"<tr><th>seed</th>{named}<th>steps</th><th>alive</th><th>births</th><th>deaths</th></tr>"

@@ -148,10 +148,6 @@ def own_bodies(
 def save_snapshot(folder: Path, snapshot: Snapshot) -> None:
     """Writes `final.npz` into a run's folder, atomically.
 
-    Args:
-        folder: of the run.
-        snapshot: what to write.
-
     Raises:
         RecordError: it cannot be written.
     """

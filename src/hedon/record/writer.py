@@ -96,9 +96,6 @@ class Writer:
 
         Readers see this moment. Call it from time to time.
 
-        Args:
-            rows: rows of the table `agents`, for example one mapping per world; none if no agent is alive.
-
         Raises:
             RecordError: as `append`.
         """
@@ -106,10 +103,6 @@ class Writer:
 
     def save_checkpoint(self, head: CheckpointHead, fill: Fill) -> None:
         """Saves a checkpoint after all rows so far are on disk; completes its head with the digests of their parts.
-
-        Args:
-            head: without the digests of parts.
-            fill: writes the arrays of all worlds.
 
         Raises:
             RecordError: as `append`.
@@ -125,10 +118,6 @@ class Writer:
 
     def save_fault(self, head: CheckpointHead, fill: Fill) -> None:
         """Saves the state of a run that stopped at a fault, in its own folder, after all rows are on disk.
-
-        Args:
-            head: without the digests of parts.
-            fill: writes the arrays of all worlds.
 
         Raises:
             RecordError: as `append`.

@@ -74,10 +74,6 @@ def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
 
     Tables of an earlier analysis in this folder that this one lacks are removed: they may be of other records.
 
-    Args:
-        analysis: What to write.
-        folder: Is made if it is missing.
-
     Returns:
         The files.
 

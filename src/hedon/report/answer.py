@@ -46,10 +46,6 @@ class Answer:
 def write_answer(folder: Path, answer: Answer) -> list[Path]:
     """Writes the files of an answer over what is there, and returns their paths.
 
-    Args:
-        folder: is made if it is missing.
-        answer: what was found.
-
     Raises:
         RecordError: A file cannot be written.
     """

@@ -23,12 +23,7 @@ from hedon.report import figure
 
 
 def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable]) -> Iterator[NamedFigure]:
-    """Draws them one after the other.
-
-    Args:
-        worlds: of one condition.
-        tables: of an analysis of all topics, by name; rows of other conditions are left out.
-    """
+    """Draws them one after the other."""
     first = worlds[0]
     mine = {name: _of_condition(table.rows, first.condition) for name, table in tables.items()}
     colors = meal_colors(first.config, first.prey)

@@ -12,12 +12,7 @@ def escape_markdown(text: str) -> str:
 
 
 def pipe_table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A Markdown table of escaped cells.
-
-    Args:
-        headers: Of the columns.
-        rows: One text per column in each.
-    """
+    """A Markdown table of escaped cells."""
     lines = [headers, *rows]
     head, *body = ["| " + " | ".join(map(escape_markdown, line)) + " |" for line in lines]
     return "\n".join([head, "| " + " | ".join(["---"] * len(headers)) + " |", *body]) + "\n"

@@ -11,10 +11,6 @@ def unfinished(runs: Iterable[Run], conditions: Conditions) -> list[str]:
 
     Rows of intervals and of single agents are written at different times, so both tables of such a run may be of
     different steps.
-
-    Args:
-        runs: as they were read.
-        conditions: their worlds, by condition.
     """
     worlds = [world for group in conditions.values() for world in group]
     return [

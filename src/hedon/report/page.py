@@ -57,37 +57,20 @@ class FigureFile:
 
 
 def write_figure(folder: Path, condition: str, named: NamedFigure, path: str) -> FigureFile:
-    """Writes a figure beside a page.
-
-    Args:
-        folder: Of the page.
-        condition: What the figure shows.
-        named: The figure.
-        path: Of its file, relative to the folder.
-    """
+    """Writes a figure beside a page."""
     svg = svg_bytes(named.figure)
     write_atomically(folder / path, lambda file: file.write(svg))
     return FigureFile(condition, named.question, path, svg, named.caption)
 
 
 def report_pages(analysis: Analysis, figures: Sequence[FigureFile]) -> tuple[str, str]:
-    """The report as HTML that needs no other file, and as Markdown, with the figures as files beside it.
-
-    Args:
-        analysis: The numbers.
-        figures: Written beside the page.
-    """
+    """The report as HTML that needs no other file, and as Markdown, with the figures as files beside it."""
     context = _context(analysis, figures)
     return render("report.html.j2", context), render("report.md.j2", context)
 
 
 def render(template: str, context: Mapping[str, Any]) -> str:
-    """A page from one of the templates; everything that a template prints is escaped, except what it marks `verbatim`.
-
-    Args:
-        template: A file of the folder `template`, for HTML if it ends with .html.j2.
-        context: Values by the names that the template uses; a missing one is an error.
-    """
+    """A page from a template; whatever the template prints is escaped, except what it marks as `verbatim` or `prose`."""
     is_html = template.endswith(".html.j2")
     environment = Environment(
         loader=PackageLoader("hedon.report", "template"),
@@ -137,11 +120,7 @@ def _context(analysis: Analysis, figures: Sequence[FigureFile]) -> dict[str, Any
 
 
 def narrow_intervals(conditions: Conditions) -> list[str]:
-    """A sentence for each condition of which some worlds died out: so far from normal values, t is too narrow.
-
-    Args:
-        conditions: Their worlds, by condition.
-    """
+    """A sentence for each condition of which some worlds died out: so far from normal values, t is too narrow."""
     told = []
     for name, worlds in conditions.items():
         gone = sum(world.extinct_step is not None for world in worlds)
@@ -170,12 +149,7 @@ def runs_context(runs: Sequence[Run]) -> dict[str, Any]:
 
 
 def condition_context(name: str, worlds: Sequence[WorldRecord]) -> dict[str, Any]:
-    """What a page says of some worlds of one setting, and of the setting.
-
-    Args:
-        name: Of the condition.
-        worlds: All of one config.
-    """
+    """What a page says of some worlds of one setting, and of the setting."""
     config = worlds[0].config
     return {
         "name": name,

@@ -35,11 +35,6 @@ CONDITION = "condition"
 def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) -> tuple[Path, list[BuiltItem]]:
     """Makes every item of some studies and writes it into a folder, over what is there.
 
-    Args:
-        studies: as they were chosen; their claims are judged.
-        gathered: the worlds for their items.
-        folder: is made if it is missing.
-
     Returns:
         The page in HTML, and the items.
 

@@ -37,14 +37,7 @@ class BuiltItem:
 def study_pages(
     studies: Sequence[Study], gathered: Gathered, made: Sequence[BuiltItem], overall: Sequence[ResultTable]
 ) -> dict[str, str]:
-    """The page by the names of its files: as HTML that needs no other file, and as Markdown beside its figures.
-
-    Args:
-        studies: As they were chosen.
-        gathered: The worlds of their items.
-        made: The items, in the order of the page.
-        overall: Tables about all of them.
-    """
+    """The page by the names of its files: as HTML that needs no other file, and as Markdown beside its figures."""
     built = {one.item.name: _item_context(one) for one in made}
     context = {
         "title": " · ".join(study.title for study in studies),

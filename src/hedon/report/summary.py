@@ -45,12 +45,7 @@ def summarize(run: Run) -> dict[str, Any]:
 
 
 def summarize_worlds(run: Run, records: Sequence[WorldRecord]) -> dict[str, Any]:
-    """The summary of a run whose worlds are read already.
-
-    Args:
-        run: That is summed up.
-        records: All its worlds, one record for each species.
-    """
+    """The summary of a run whose worlds are read already."""
     species = {name: [each for each in records if each.species == name] for name in (r.species for r in records)}
     fares = {name: [_fare(world) for world in own] for name, own in species.items()}
     worlds = [_world(run, index, {name: own[index] for name, own in species.items()}, fares) for index in _indices(run)]

@@ -23,10 +23,6 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
     Neutral genes, which show what chance does, become one row. The bounds of an interval become one column, empty below
     five worlds; a column `condition` with a single value is left out where there is only one condition, and so is
     every column without any value.
-
-    Args:
-        table: the results.
-        hidden: columns that are left out too.
     """
     rows = _with_neutral_folded(table.rows)
     single = "condition" in rows.columns and rows["condition"].n_unique() == 1 and not table.several
@@ -64,12 +60,7 @@ def _with_neutral_folded(rows: pl.DataFrame) -> pl.DataFrame:
 
 
 def is_numeric(rows: Sequence[Sequence[str]], column: int) -> bool:
-    """Whether a shown column holds numbers, which are aligned to the right.
-
-    Args:
-        rows: Texts as they are shown.
-        column: Index.
-    """
+    """Whether a shown column holds numbers, which are aligned to the right."""
     return all(not row[column] or row[column][0] in "0123456789-" for row in rows)
 
 

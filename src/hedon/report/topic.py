@@ -36,9 +36,6 @@ class TopicError(HedonError):
 def require_topics(names: Sequence[str]) -> Sequence[str]:
     """The same names.
 
-    Args:
-        names: Of topics.
-
     Raises:
         TopicError: one of them is none.
     """
@@ -71,25 +68,13 @@ Tell = Callable[[int, int, str], None]
 
 
 def tell_nobody(done: int, of: int, step: str) -> None:
-    """A `Tell` for those who need not know.
-
-    Args:
-        done: steps.
-        of: how many there are.
-        step: what comes.
-    """
+    """A `Tell` for those who need not know."""
 
 
 def run_topics(
     conditions: Conditions, names: Sequence[str] = tuple(TOPICS), tell: Tell = tell_nobody
 ) -> list[ResultTable]:
-    """The tables of some topics; those without rows are left out, and worlds with two parents where one is needed.
-
-    Args:
-        conditions: Worlds by condition.
-        names: Keys of `TOPICS`, in the order of their tables.
-        tell: Is told of each topic.
-    """
+    """The tables of some topics; those without rows are left out, and worlds with two parents where one is needed."""
     trees = {
         condition: alone
         for condition, worlds in conditions.items()

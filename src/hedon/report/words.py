@@ -31,11 +31,6 @@ def answers(conditions: Conditions, tables: Mapping[str, ResultTable], runs: Seq
 
     The verdict is that of the test "direction" of the topic drift: the mean score against neutral genes along the same
     pedigrees, with Holm's correction.
-
-    Args:
-        conditions: Worlds by condition.
-        tables: By name, those of the topic drift among them.
-        runs: That the worlds are of.
     """
     return {name: _answers(worlds, tables, runs) for name, worlds in conditions.items()}
 
@@ -91,13 +86,7 @@ def _span(values: pl.Series) -> str:
 
 
 def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
-    """What the test says; where it does not decide, how many times the steps would, if all goes on like this.
-
-    Args:
-        test: row of the table drift: mean score over worlds, in standard deviations of drift, p, and p corrected.
-        tests: for how many that is.
-        seconds: that the steps took; None if it is not known.
-    """
+    """What the test says; where it does not decide, how many times the steps would, if all goes on like this."""
     score, chance = test["effect"], f"p = {test['p_holm']:.2g}, corrected for {tests} tests against drift"
     if test["p_holm"] <= LEVEL:
         return f"selected {'for' if score > 0 else 'against'} ({chance})."

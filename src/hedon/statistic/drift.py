@@ -95,12 +95,7 @@ def score_tests(scores: Floats) -> list[ScoreTest]:
 
 
 def rank_sum_p(ranks: Sequence[int], of: Sequence[int]) -> float:
-    """Two-sided chance of ranks whose sum is this far from its middle, if each rank is as likely as any other.
-
-    Args:
-        ranks: one per world, from 1 on.
-        of: how many are ranked in each world.
-    """
+    """Two-sided chance of ranks whose sum is this far from its middle, if each rank is as likely as any other."""
     chances = np.ones(1)
     for count in of:
         chances = np.convolve(chances, np.full(count, 1.0 / count))

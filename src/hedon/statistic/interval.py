@@ -59,10 +59,6 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL, within: 
 def mean_bounds(values: Iterable[float | None], level: float = LEVEL) -> tuple[float, float, float]:
     """Mean and bounds of `mean_interval`, with NaN for what has no value.
 
-    Args:
-        values: one per world; None and NaN are left out.
-        level: of confidence.
-
     Returns:
         Mean, lower and upper bound.
     """
@@ -94,11 +90,6 @@ def share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, fl
 
 def exact_share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, float]:
     """Clopper and Pearson's (1934) interval of a share, for verdicts: each bound is an exact one-sided binomial test.
-
-    Args:
-        count: how many have it.
-        of: how many there are.
-        level: of confidence; each bound alone errs at most half as often as the rest.
 
     Returns:
         Lower and upper bound.

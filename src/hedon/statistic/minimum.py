@@ -9,10 +9,5 @@ FOR_FULL_LENGTH = 6
 
 
 def worlds_needed_note(worlds: int, needed: int = FOR_INTERVAL) -> str:
-    """Why a number is withheld: "needs 5 worlds, has 3"; empty if there are enough.
-
-    Args:
-        worlds: How many there are.
-        needed: How many it takes.
-    """
+    """Why a number is withheld: "needs 5 worlds, has 3"; empty if there are enough."""
     return "" if worlds >= needed else f"needs {needed} worlds, has {worlds}"

@@ -34,14 +34,7 @@ CERTAIN = 10.0
 
 
 def t_test_power(effect: float, worlds: float, level: float = 0.05, *, paired: bool) -> float:
-    """The chance that a two-sided t test finds an effect. Source: Cohen (1988), sections 2.3 and 2.4.
-
-    Args:
-        effect: difference of the means, in standard deviations: of pairs, or within each of two conditions.
-        worlds: of each condition, two or more.
-        level: of the test.
-        paired: whether worlds are compared in pairs.
-    """
+    """The chance that a two-sided t test finds an effect. Source: Cohen (1988), sections 2.3 and 2.4."""
     degrees = worlds - 1 if paired else 2 * worlds - 2
     shift = abs(effect) * math.sqrt(worlds if paired else worlds / 2)
     edge = t_quantile(1.0 - level / 2, degrees)
@@ -52,13 +45,7 @@ def t_test_power(effect: float, worlds: float, level: float = 0.05, *, paired: b
 
 
 def pair_test_power(effect: float, pairs: int, level: float = 0.05) -> float:
-    """The chance that exchanging the signs of pairs finds an effect, if differences are normally distributed.
-
-    Args:
-        effect: mean difference, in standard deviations of the differences.
-        pairs: one or more.
-        level: of the two-sided test.
-    """
+    """The chance that exchanging the signs of pairs finds an effect, if differences are normally distributed."""
     if pairs > SIMULATED:
         return t_test_power(effect, pairs, level, paired=True)
     if 2.0 ** (1 - pairs) > level:

@@ -41,13 +41,7 @@ class RequestCost:
 
 
 def request_cost(request: Request, folder: Path, threads: int) -> RequestCost:
-    """Measures how fast this machine is, which takes seconds, and how long the runs of a request take.
-
-    Args:
-        request: the items, with their scale.
-        folder: of the runs.
-        threads: to use; 0 for all processors.
-    """
+    """Measures how fast this machine is, which takes seconds, and how long the runs of a request take."""
     threads = threads or usable_cpus()
     speeds: dict[int, Speed] = {}
 

@@ -31,10 +31,6 @@ def measure_speed(config: Config, threads: int) -> Speed:
     """Times one window of worlds of a setting, each on its own thread; takes seconds.
 
     All agents are there from the first step and learn at the end; no agent is born in between.
-
-    Args:
-        config: the setting.
-        threads: number of threads that the runs will use.
     """
     worlds = min(threads, MOST_WORLDS)
     count = min(TYPICAL_ALIVE, *(own.population.capacity for own in config.species.values()))

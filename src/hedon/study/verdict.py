@@ -98,13 +98,7 @@ def verdicts(worlds: Iterable[WorldRecord], claims: Iterable[Claim | Order]) -> 
 
 
 def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdict:
-    """Applies a claim's rule to worlds of one condition.
-
-    Args:
-        claim: with its rule.
-        condition: its name, for the verdict.
-        worlds: of that condition, one or more.
-    """
+    """Applies a claim's rule to worlds of one condition."""
     if claim.over_worlds == "extinction":
         return _judge_extinction(claim, condition, worlds)
     used, shortfall, remarks = _asked(claim, worlds)
@@ -124,13 +118,7 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
 
 
 def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[WorldRecord]) -> Verdict:
-    """Applies the rule of a claim about two conditions to worlds of both.
-
-    Args:
-        order: the claim, with its rule.
-        first: worlds of the first condition, one or more.
-        second: worlds of the second condition, one or more.
-    """
+    """Applies the rule of a claim about two conditions to worlds of both."""
     parts, remarks, shortfalls = [], [], []
     for worlds in (first, second):
         used, shortfall, said = _asked(order, worlds)
@@ -150,12 +138,6 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
 
 def place(low: float, high: float, region_low: float, region_high: float) -> str:
     """Where an interval lies: within the region, outside of it, or across its border (or without bounds).
-
-    Args:
-        low: bound of the interval; NaN where it has none.
-        high: the other bound.
-        region_low: bound of the region in which the claim holds.
-        region_high: the other bound.
 
     Returns:
         `HOLDS`, `FAILS` or `UNDECIDED`.

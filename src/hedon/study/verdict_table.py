@@ -19,12 +19,7 @@ _NOTE = (
 
 
 def verdict(conditions: Conditions, claims: Iterable[Claim | Order] | None = None) -> list[ResultTable]:
-    """What some worlds say of claims that are about their conditions.
-
-    Args:
-        conditions: Worlds by condition.
-        claims: By default those of all installed studies.
-    """
+    """What some worlds say of claims that are about their conditions."""
     if claims is None:
         claims = (claim for study in installed()[0].values() for claim in study.claims)
     found = verdicts((world for worlds in conditions.values() for world in worlds), claims)

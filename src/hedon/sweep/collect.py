@@ -21,10 +21,6 @@ _AT_ONCE = 1000
 def read_results(plan: SweepPlan, store: Store) -> Iterator[tuple[str, dict[str, Any]]]:
     """The results of all batches that have worlds of a plan, with the beginnings of their names.
 
-    Args:
-        plan: Of the sweep.
-        store: Where the sweep lives.
-
     Raises:
         SweepError: one cannot be read.
     """
@@ -74,10 +70,6 @@ def _sweep_table(plan: SweepPlan, results: Iterable[tuple[str, dict[str, Any]]])
 
 def collect(plan: SweepPlan, store: Store) -> pl.DataFrame:
     """Writes the table `table.parquet` of all worlds so far, and returns it.
-
-    Args:
-        plan: Of the sweep.
-        store: Where the sweep lives.
 
     Raises:
         SweepError: A result cannot be read, or the table cannot be written.

@@ -66,12 +66,7 @@ class SweepCondition:
 
 
 def changes(places: Mapping[str, Sequence[str]], settings: Settings) -> dict[str, Any]:
-    """What a condition changes in its base, by complete paths.
-
-    Args:
-        places: the settings that each factor changes.
-        settings: values of the factors.
-    """
+    """What a condition changes in its base, by complete paths."""
     return {place: settings[name] for name, own in places.items() for place in own}
 
 
@@ -109,9 +104,6 @@ class Loader:
     def load(self, settings: Settings) -> RunPlan:
         """The config of a condition and its rules.
 
-        Args:
-            settings: Values of factors.
-
         Raises:
             ConfigError: It cannot be; the message says where.
         """
@@ -140,12 +132,7 @@ class Loader:
 
 
 def make_conditions(loader: Loader, settings: Sequence[Settings]) -> Conditions:
-    """Makes the conditions of a sweep, and checks all of them.
-
-    Args:
-        loader: Of their configs.
-        settings: Values of the factors, by condition.
-    """
+    """Makes the conditions of a sweep, and checks all of them."""
     groups: dict[str, list[int]] = {}
     for index, each in enumerate(settings):
         groups.setdefault(repr(list(_shaping(each).items())), []).append(index)

@@ -35,10 +35,6 @@ class Design:
 def all_settings(factors: Sequence[Factor], design: Design) -> list[Settings]:
     """Every combination: groups of zipped factors and all others are crossed, what is drawn from ranges too.
 
-    Args:
-        factors: those of a zipped group have equally many values.
-        design: how they are put together.
-
     Returns:
         Without factors, one empty setting.
     """

@@ -56,10 +56,6 @@ def read_factor(name: str, said: Any) -> Factor | Problem:
 
     With `count` a range gives that many values, evenly apart, both ends included. Without, values are drawn from it.
 
-    Args:
-        name: The setting's path.
-        said: The entry, as TOML gives it.
-
     Returns:
         The factor, or what is wrong with the entry.
     """

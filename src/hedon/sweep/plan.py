@@ -103,12 +103,7 @@ class SweepPlan:
                 yield self._batch(condition, seeds)
 
     def left(self, done: Done, part: tuple[int, int] = (1, 1)) -> list[Batch]:
-        """The batches of worlds that are not done, in their order.
-
-        Args:
-            done: what is.
-            part: number, from 1 on, and count of parts into which batches are dealt out in turn.
-        """
+        """The batches of worlds that are not done, in their order."""
         found: list[Batch] = []
         for index, batch in enumerate(self.batches()):
             if index % part[1] == part[0] - 1:
@@ -182,12 +177,7 @@ def done_seeds(names: Sequence[str]) -> dict[str, set[int]]:
 
 
 def rounds_of(seeds: Sequence[int], worlds: int) -> tuple[tuple[int, ...], ...]:
-    """Seeds in groups that make a batch each.
-
-    Args:
-        seeds: all of them.
-        worlds: most of a group.
-    """
+    """Seeds in groups that make a batch each."""
     ends = [0]
     for i in range(len(seeds)):
         if i - ends[-1] == worlds or len(seed_text(seeds[ends[-1] : i + 1])) > LONGEST_SEEDS:
@@ -200,10 +190,6 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
 
     Configs come first and the plan last: where there is a plan, all of it is there. Worlds that are in both plans
     keep their batches.
-
-    Args:
-        file: The sweep as its file describes it.
-        store: Where the sweep lives.
 
     Raises:
         SweepError: a sweep lives there that has no world of this one, or it cannot be written.
@@ -274,12 +260,6 @@ def _tuples(value: Any) -> Any:
 def load_config_of(store: Store, key: str, base: str, changed: Mapping[str, Any]) -> Config:
     """The config of a condition.
 
-    Args:
-        store: Where the sweep lives.
-        key: Digest of the config.
-        base: Digest of its base.
-        changed: What it changes in it, by complete paths.
-
     Raises:
         SweepError: It is missing, or another one.
         ConfigError: It cannot be read.
@@ -296,10 +276,6 @@ def load_config_of(store: Store, key: str, base: str, changed: Mapping[str, Any]
 
 def load_rules(store: Store, config: Config) -> tuple[RuleSource, ...]:
     """The texts of the rules that a condition is pinned to.
-
-    Args:
-        store: Where the sweep lives.
-        config: Of the condition.
 
     Raises:
         SweepError: One is missing or damaged.

@@ -26,10 +26,6 @@ WORLDS = 4
 def read_sweep(path: Path | str, *, skip_invalid: bool = False) -> SweepFile:
     """Reads and checks a file, and the config of every condition.
 
-    Args:
-        path: of the file.
-        skip_invalid: leaves out conditions that cannot be, unless none can.
-
     Raises:
         ConfigError: it cannot be read, or something in it is wrong; it has all problems of the file, or those of all
             conditions that cannot be.

@@ -17,10 +17,6 @@ def world_rows(summary: Mapping[str, Any], digests: Sequence[str]) -> list[Row]:
 
     Nested values get names joined by "_": weights.w_action.mean is w_action_mean. Where there are several species, what
     is of one of them begins with its name and a dot, as in prey.alive_mean, and sums over all are totals: total_alive.
-
-    Args:
-        summary: Of the run, as `summarize` gives it.
-        digests: Of the worlds' ends, in the order of the seeds.
     """
     rows = []
     for world, digest in zip(summary["worlds"], digests, strict=True):

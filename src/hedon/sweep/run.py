@@ -13,13 +13,7 @@ from hedon.sweep.work import RESULTS, WORK, Task, make_task
 
 
 def open_batches(plan: SweepPlan, store: Store, part: tuple[int, int] = (1, 1)) -> list[Batch]:
-    """The batches without a result, in their order.
-
-    Args:
-        plan: of the sweep.
-        store: where it lives.
-        part: number, from 1 on, and count of parts into which batches are dealt out in turn; the first of one.
-    """
+    """The batches without a result, in their order."""
     return plan.left(done_seeds(store.names(RESULTS)), part)
 
 

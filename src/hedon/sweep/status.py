@@ -35,12 +35,7 @@ class Status:
 
 
 def sweep_status(plan: SweepPlan, store: Store) -> Status:
-    """Reads how far a sweep is, from its results and, where they are in its folder, from its runs under way.
-
-    Args:
-        plan: Of the sweep.
-        store: Where the sweep lives.
-    """
+    """Reads how far a sweep is, from its results and, where they are in its folder, from its runs under way."""
     missing, done, seconds, worlds = open_batches(plan, store), 0, 0.0, list[dict[str, Any]]()
     for _, result in read_results(plan, store):
         done, seconds = done + 1, seconds + (result["seconds"] or 0.0)

@@ -95,10 +95,6 @@ class Task:
     def make(self, threads: int, display: Display | None) -> str:
         """Makes the batch, from where it is, and writes its result.
 
-        Args:
-            threads: That the process may use.
-            display: Shows progress.
-
         Returns:
             "finished", or "interrupted".
 

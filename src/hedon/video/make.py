@@ -42,13 +42,6 @@ def choose_range(
 ) -> FrameRange:
     """What to show; by default all that was recorded, or all of the life of the followed agent.
 
-    Args:
-        footage: the frames of a run.
-        first: step of the first picture; None for the first frame.
-        last: step of the last picture; None for the last frame.
-        speed: steps from one picture to the next.
-        follow: id of the agent in the middle; None for the whole arena.
-
     Raises:
         VideoError: there are no frames of these steps or of this agent.
     """

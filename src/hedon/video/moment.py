@@ -137,10 +137,6 @@ class Footage:
 def open_footage(folder: Path, seed: int | None = None) -> Footage:
     """The frames of one world of a run.
 
-    Args:
-        folder: of the run.
-        seed: of the world; None for the first one.
-
     Raises:
         VideoError: the run has no frames, or no such world.
         RecordError: it is not a run, or a part of its frames is damaged.
@@ -164,13 +160,7 @@ def _steps(run: Run, wanted: pl.Expr) -> tuple[int, int] | None:
 
 
 def blend(before: Snapshot, after: Snapshot | None, step: int) -> Snapshot:
-    """The world at a step between two frames: agents that are in both move evenly, all else stays as it was.
-
-    Args:
-        before: the last frame that is not later than `step`, or the first one of all.
-        after: the next frame; None at the end.
-        step: the moment.
-    """
+    """The world at a step between two frames: agents that are in both move evenly, all else stays as it was."""
     if after is None or step <= before.step or after.step - before.step > EVEN_STEPS:
         return replace(before, step=step)
     share = (step - before.step) / (after.step - before.step)

@@ -6,12 +6,7 @@ from hedon.config.schema.arena import outer_count, walls
 
 
 def engine_text(config: Config, seed: int) -> str:
-    """One `path=value` per line: the seed, the walls, and every setting of the engine.
-
-    Args:
-        config: of the world.
-        seed: of the world.
-    """
+    """One `path=value` per line: the seed, the walls, and every setting of the engine."""
     lines = [f"seed={seed}", f"outer_walls={outer_count(config.arena)}"]
     lines += ["wall=" + ",".join(repr(float(value)) for value in wall) for wall in walls(config.arena)]
     lines += [f"{path}={value}" for path, value in flat(engine_config(config))]

@@ -11,11 +11,6 @@ from hedon.view.page import ViewError, page_files, to_json
 def export(folder: Path, data: Mapping[str, Any], records: Mapping[str, Path]) -> int:
     """Writes a site.
 
-    Args:
-        folder: A new or empty folder.
-        data: What the page is told, by name.
-        records: The records that it reads, by name.
-
     Returns:
         The bytes written.
 

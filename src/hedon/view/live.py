@@ -23,10 +23,6 @@ BEGINNING = (".initial", ".initial_count", ".initial_mean", ".initial_sd", ".at_
 def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, Any]]:
     """What `live_world` gives for a preset or file, and for all presets after it.
 
-    Args:
-        first: a preset or a file; empty for the presets alone.
-        fidelity: of them all; None for the config's own.
-
     Raises:
         ConfigError: There is no such preset or file, or something in it is wrong.
         ViewError: The world has a rule in Python.
@@ -37,10 +33,6 @@ def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, 
 
 def live_world(config: Config, source: str) -> dict[str, Any]:
     """One world that the page can make.
-
-    Args:
-        config: of the world.
-        source: the preset or the file that it comes from.
 
     Returns:
         `name`; `description`; `source`, as in `hedon run SOURCE`; `fidelity`; `toml`, the whole config if no preset is
@@ -68,10 +60,6 @@ def live_world(config: Config, source: str) -> dict[str, Any]:
 
 def require_live(config: Config, source: str) -> None:
     """Refuses a world that the page cannot simulate.
-
-    Args:
-        config: of the world.
-        source: the preset or the file that it comes from.
 
     Raises:
         ViewError: The world has a rule in Python.

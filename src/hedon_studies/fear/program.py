@@ -44,10 +44,6 @@ _READ = (
 def window(world: WorldRecord, number: int) -> dict[str, float]:
     """What is known of one window of a world.
 
-    Args:
-        world: whose population is recorded at the end of each window.
-        number: of the window, from 1 on.
-
     Returns:
         The row of that window by column; empty where the record does not reach it.
     """

@@ -51,12 +51,7 @@ def _about(preset: str) -> Condition:
 
 
 def score(weight: str, world: WorldRecord) -> float | None:
-    """A weight's score among neutral genes of the same pedigree; None without a whole pedigree.
-
-    Args:
-        weight: a genome column.
-        world: a world with its agents.
-    """
+    """A weight's score among neutral genes of the same pedigree; None without a whole pedigree."""
     return next((found.score for found in standard_drift(world, LAST_AGENTS) if found.weight == weight), None)
 
 

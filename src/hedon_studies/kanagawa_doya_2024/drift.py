@@ -43,15 +43,7 @@ Scores = Mapping[str, Mapping[int, Sequence[WorldDrift]]]
 def make_drift(
     conditions: Sequence[Condition], rewards: Mapping[str, str], scale: Scale, name: str, inputs: ItemInputs
 ) -> Iterator[NamedFigure | ResultTable]:
-    """The figure and the tables of scores against drift.
-
-    Args:
-        conditions: whose worlds are read.
-        rewards: the weights that are tested, which all conditions have, with their titles.
-        scale: how much should be run.
-        name: of the figure; begins the names of the tables.
-        inputs: what there is.
-    """
+    """The figure and the tables of scores against drift."""
     worlds = present(conditions, inputs)
     scores = {
         label: {w.seed: found for w in group if (found := standard_drift(w, LAST_AGENTS))}

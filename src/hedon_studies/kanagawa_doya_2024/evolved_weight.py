@@ -19,15 +19,7 @@ _AGAINST_ACTION = tuple(against_action(("w_normal",)))
 def draw_last(
     name: str, question: str, conditions: Sequence[Condition], panels: Sequence[tuple[str, str]], inputs: ItemInputs
 ) -> Iterator[NamedFigure]:
-    """The weights of those born last in the worlds of some conditions: the panels of each condition side by side.
-
-    Args:
-        name: of the figure.
-        question: its title.
-        conditions: side by side.
-        panels: pairs of weights, drawn one against the other.
-        inputs: with the worlds that there are.
-    """
+    """The weights of those born last in the worlds of some conditions: the panels of each condition side by side."""
     worlds = present(conditions, inputs)
     caption = sentences(_READ, missing(conditions, inputs))
     if not worlds:

@@ -39,12 +39,7 @@ Drifts = Mapping[str, Sequence[tuple[int, Drift]]]
 
 
 def condition_drifts(inputs: ItemInputs, conditions: Sequence[Condition]) -> Drifts:
-    """All genes of all worlds of some conditions.
-
-    Args:
-        inputs: with the worlds that there are.
-        conditions: whose worlds are read.
-    """
+    """All genes of all worlds of some conditions."""
     return {
         condition.label: [
             (world.seed, found)
@@ -57,13 +52,7 @@ def condition_drifts(inputs: ItemInputs, conditions: Sequence[Condition]) -> Dri
 
 
 def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | ResultTable]:
-    """The figure and the two tables of a study.
-
-    Args:
-        name: that the parts' names begin with.
-        drifts: of `condition_drifts`.
-        note: on the worlds.
-    """
+    """The figure and the two tables of a study."""
     shown = {label: [drift for _, drift in found] for label, found in drifts.items()}
     question = "Do weights go where mutations push them?"
     yield NamedFigure(f"{name}_prediction", question, draw_predictions(shown, GENES), _DRAWN)

@@ -18,14 +18,7 @@ _READ = (
 def draw_courses(
     name: str, question: str, conditions: Sequence[Condition], inputs: ItemInputs
 ) -> Iterator[NamedFigure]:
-    """The mean weights of the worlds of some conditions, which must have the same genes, over time: a row for each.
-
-    Args:
-        name: of the figure.
-        question: its title.
-        conditions: a row for each.
-        inputs: with the worlds that there are.
-    """
+    """The mean weights of the worlds of some conditions, which must have the same genes, over time: a row for each."""
     worlds = present(conditions, inputs)
     caption = sentences(_READ, missing(conditions, inputs))
     if not worlds:

@@ -38,10 +38,6 @@ Floats = NDArray[np.float64]
 def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
     """The row of `worlds.csv` that describes one world.
 
-    Args:
-        world: A world of `run`.
-        run: Its run, for the provenance.
-
     Returns:
         Arm and seed; demography, with the number alive averaged over all steps; for each weight the mean among the
         living at the end and its score against neutral walks down the same pedigree; revision, start and digests.
@@ -76,12 +72,7 @@ def living(world: WorldRecord) -> pl.DataFrame:
 
 
 def reduce_runs(folders: Iterable[Path], out: Path) -> None:
-    """Writes the two tables of some runs.
-
-    Args:
-        folders: The runs.
-        out: A folder, created if it does not exist.
-    """
+    """Writes the two tables of some runs."""
     rows: list[dict[str, Any]] = []
     genes: list[pl.DataFrame] = []
     for folder in folders:
@@ -97,9 +88,6 @@ def reduce_runs(folders: Iterable[Path], out: Path) -> None:
 def pairs(worlds: pl.DataFrame) -> pl.DataFrame:
     """The worlds of both arms by seed, without pairs in which a world died out.
 
-    Args:
-        worlds: The rows of `worlds.csv`.
-
     Returns:
         One row per pair: "seed", and each weight with the suffixes `_slow` and `_fast`.
     """
@@ -112,11 +100,6 @@ def pairs(worlds: pl.DataFrame) -> pl.DataFrame:
 def direction(paired: pl.DataFrame, arm: str, gene: str = SIGHT) -> Floats:
     """The direction of the mean evolved reward: the angle of (food, sight), 0 if only food is liked.
 
-    Args:
-        paired: The result of `pairs`.
-        arm: "slow" or "fast".
-        gene: A neutral gene that replaces sight as a control.
-
     Returns:
         One angle per pair [degrees].
     """
@@ -125,9 +108,6 @@ def direction(paired: pl.DataFrame, arm: str, gene: str = SIGHT) -> Floats:
 
 def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
     """The primary test and the secondary ones, in the order of expected.md.
-
-    Args:
-        worlds: The rows of `worlds.csv`.
 
     Returns:
         One row per test: "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test),
@@ -152,9 +132,6 @@ def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
 
 def neutral_control(worlds: pl.DataFrame) -> pl.DataFrame:
     """The primary test with each neutral gene in place of sight.
-
-    Args:
-        worlds: The rows of `worlds.csv`.
 
     Returns:
         One row per neutral gene, as from `named_test`.

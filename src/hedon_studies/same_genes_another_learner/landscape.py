@@ -38,10 +38,6 @@ Floats = NDArray[np.float64]
 def write_arms(arms: Mapping[str, pl.DataFrame], folder: Path) -> None:
     """Writes the founders of all arms, their genes once.
 
-    Args:
-        arms: Tables `founders-outcome.csv` of `hedon assay landscape`, by arm.
-        folder: For the two files; must exist.
-
     Raises:
         ValueError: The founders of two arms differ.
     """
@@ -58,11 +54,7 @@ def write_arms(arms: Mapping[str, pl.DataFrame], folder: Path) -> None:
 
 
 def read_arms(folder: Path) -> dict[str, pl.DataFrame]:
-    """The founders of each arm with their genes and outcomes.
-
-    Args:
-        folder: With the files of `write_arms`.
-    """
+    """The founders of each arm with their genes and outcomes."""
     founders = pl.read_parquet(folder / FOUNDERS)
     became = pl.read_parquet(folder / OUTCOMES).partition_by("arm", as_dict=True, include_key=False)
     return {str(name): pl.concat([founders, rows], how="horizontal") for (name,), rows in became.items()}
@@ -70,12 +62,6 @@ def read_arms(folder: Path) -> dict[str, pl.DataFrame]:
 
 def slopes(founders: pl.DataFrame, outcome: str, genes: tuple[str, ...] = (SIGHT, FOOD, ACTION)) -> pl.DataFrame:
     """The slope of relative fitness on each weight, by least squares within each world.
-
-    Args:
-        founders: One row per founder: "seed", the genes and outcomes of `hedon assay landscape`.
-        outcome: "food", energy eaten per step lived, or "descendants", alive at the end; made relative to the mean of
-            the world.
-        genes: Columns of the regression.
 
     Returns:
         One row per world: "seed", and the slope on each gene [share of mean fitness per unit of weight]; null in a
@@ -96,9 +82,6 @@ def slopes(founders: pl.DataFrame, outcome: str, genes: tuple[str, ...] = (SIGHT
 def hump(founders: pl.DataFrame) -> pl.DataFrame:
     """Relative living descendants of those who like sight strongly, less those who like it moderately.
 
-    Args:
-        founders: As for `slopes`. Founders whose weight of food is not above 0 are left out.
-
     Returns:
         One row per world: "seed", and "hump", the mean for weights of sight from 1 to 2 less that from 0 to 1.
     """
@@ -113,11 +96,6 @@ def hump(founders: pl.DataFrame) -> pl.DataFrame:
 def direction_change(before: pl.DataFrame, after: pl.DataFrame, outcome: str = "food") -> Floats:
     """The change of the slope on sight less that of the slope on food, for each pair of worlds of equal seeds.
 
-    Args:
-        before: Founders of the first arm.
-        after: Founders of the second arm.
-        outcome: As for `slopes`.
-
     Returns:
         One value per pair, by seed [share of mean fitness per unit of weight], shape (pairs,).
     """
@@ -128,9 +106,6 @@ def direction_change(before: pl.DataFrame, after: pl.DataFrame, outcome: str = "
 
 def named_tests(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     """The primary test and the nine secondary ones, in the order of expected.md.
-
-    Args:
-        arms: Founders of each arm, by name.
 
     Returns:
         One row per test: "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test),
@@ -145,9 +120,6 @@ def named_tests(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 def neutral_control(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     """How often a neutral gene, added to the regression, has a slope whose 95 % interval over worlds leaves out 0.
-
-    Args:
-        arms: Founders of each arm, by name.
 
     Returns:
         One row per arm: "arm", "genes", and "excluding_0", for how many genes the interval leaves out 0.
@@ -164,11 +136,7 @@ def neutral_control(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 
 def repeats_the_pilots(tests: pl.DataFrame) -> bool:
-    """Whether the primary test meets the criterion that was fixed before the first world.
-
-    Args:
-        tests: Of `named_tests`.
-    """
+    """Whether the primary test meets the criterion that was fixed before the first world."""
     primary = tests.row(0, named=True)
     return primary["low"] > 0 and REPEATS[0] <= primary["effect"] <= REPEATS[1]
 

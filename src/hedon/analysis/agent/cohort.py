@@ -45,10 +45,6 @@ def complete_share(cohort: pl.DataFrame) -> float:
 def genome_distribution(agents: pl.DataFrame, names: Sequence[str]) -> pl.DataFrame:
     """The distribution of each weight over each birth cohort.
 
-    Args:
-        agents: table `agents` of one world, with the column `window`.
-        names: genome columns.
-
     Returns:
         By window and weight: agents, mean, sd (null for a single agent), q05, q25, median, q75, q95.
     """

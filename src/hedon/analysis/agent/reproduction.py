@@ -17,9 +17,6 @@ _MANY = 10  # agents with this many children or more are counted together
 def reproduction(cohort: pl.DataFrame) -> dict[str, Any]:
     """Children of the agents of one cohort, whether these died or not.
 
-    Args:
-        cohort: rows of the table `agents`.
-
     Returns:
         agents, in the cohort; complete, the share of them that has died; mean, children per agent, the realized net
         reproduction; variance of the number of children, with n − 1; opportunity, variance over squared mean: the

@@ -191,15 +191,6 @@ def lineages(
 ) -> NDArray[np.float32]:
     """Neutral genes down single lines of descent, apart from any pedigree.
 
-    Args:
-        law: of founding and mutation.
-        mutations: births in each line.
-        worlds: that the lines belong to; with tabulated noise, each has a table of its own.
-        count: lines in each world.
-        rng: source of chance.
-        births: with tabulated noise, how many births a window has; each birth of a line is any one of them.
-        genes: that each agent has, each with noise of its own.
-
     Returns:
         The genes of the founder and after each mutation, shape (mutations + 1, worlds, count, genes).
     """

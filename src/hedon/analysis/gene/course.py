@@ -89,9 +89,6 @@ def standard_interval(worlds: Sequence[WorldRecord]) -> float:
 def standard_courses(worlds: Sequence[WorldRecord]) -> list[WorldCourse | None]:
     """The courses of the worlds of one condition, at the same times; made once, since walks take long.
 
-    Args:
-        worlds: At least one.
-
     Returns:
         For each world what `world_course` gives with the standard interval and the world's own source of chance.
     """

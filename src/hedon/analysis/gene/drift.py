@@ -77,13 +77,6 @@ def world_drift(
 ) -> list[WorldDrift]:
     """Compares each weight of a world with neutral walks along its pedigree.
 
-    Args:
-        world: a world with its agents.
-        rng: source of chance for the walks.
-        walks: how many neutral genes walk for each law of mutation.
-        last: compares the mean of as many agents that were born last, dead or alive, as the paper does with 5000; by
-            default that of the living at the end, as `last_living` has them.
-
     Returns:
         A result for each weight. An empty list where no neutral gene can walk down the pedigree (see
         `walked_pedigree`).

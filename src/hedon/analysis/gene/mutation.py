@@ -83,12 +83,6 @@ def mutation_effects(
 ) -> list[dict[str, Any]]:
     """The effects of each gene on each outcome, by both scales.
 
-    Args:
-        births: of one condition.
-        names: of the genes.
-        rng: source of chance.
-        replicates: bootstrap samples.
-
     Returns:
         A row for each scale of `SCALES`, outcome of `OUTCOMES` and weight (genome column): births and parents that
         enter, children of parents with several; effect, the change of the outcome over its mean, per unit of the

@@ -9,9 +9,6 @@ from hedon.analysis.world.record import WorldRecord, shares_noise
 def walked_pedigree(world: WorldRecord) -> Genealogy | None:
     """The pedigree of a world, where neutral genes that walk down it show what drift does.
 
-    Args:
-        world: Its records.
-
     Returns:
         None where there is no pedigree, or one with gaps, whose walks would have no beginning; where the founders come
         from a table, whose law the walks do not know; where children have two parents; and where noise is fixed by the
@@ -25,9 +22,6 @@ def walked_pedigree(world: WorldRecord) -> Genealogy | None:
 
 def like_neutral(world: WorldRecord) -> Mapping[str, list[str]]:
     """For each gene the recorded neutral genes that begin and mutate like it; none if a table gives the founders.
-
-    Args:
-        world: Its records.
 
     Returns:
         By genome column; a neutral gene is not among its own.

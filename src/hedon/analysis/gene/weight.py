@@ -17,9 +17,6 @@ Spread = dict[str, float | None]
 def last_lived_step(population: pl.DataFrame) -> int:
     """The end of the records of one world, or the last of their rows at which somebody lived [step].
 
-    Args:
-        population: Rows of the table `population` of one world and species; 0 where there are none.
-
     Raises:
         ArgumentError: The rows are of several species.
     """
@@ -51,10 +48,6 @@ def last_living(agents: pl.DataFrame, population: pl.DataFrame) -> pl.DataFrame:
 
 def weight_spreads(agents: pl.DataFrame, names: Sequence[str]) -> dict[str, Spread]:
     """How weights are spread among some agents.
-
-    Args:
-        agents: Rows of the table `agents`.
-        names: Genome columns.
 
     Returns:
         By name: mean, None where there are no agents, and sd, None where there are fewer than two.

@@ -28,12 +28,7 @@ def cohort_rows(
     conditions: Conditions,
     measure: Callable[[WorldRecord, pl.DataFrame], Iterable[dict[str, Any]]],
 ) -> list[dict[str, Any]]:
-    """Rows of every birth cohort of every world, each with its world, window and steps.
-
-    Args:
-        conditions: the worlds.
-        measure: gives the rows of one cohort, from its world and its rows of the table `agents`.
-    """
+    """Rows of every birth cohort of every world, each with its world, window and steps."""
     rows = []
     for worlds in conditions.values():
         windows = window_count(worlds)
@@ -62,13 +57,7 @@ def incomplete_note(rows: pl.DataFrame) -> str:
 
 
 def world_means(rows: pl.DataFrame, by: Sequence[str], quantities: Sequence[str]) -> pl.DataFrame:
-    """Means over the cohorts of each world, for each group of rows.
-
-    Args:
-        rows: a row per cohort, with the columns condition and seed.
-        by: further columns that tell groups apart.
-        quantities: columns to average; null is left out.
-    """
+    """Means over the cohorts of each world, for each group of rows."""
     if rows.is_empty():
         return rows
     groups = rows.group_by("condition", "seed", *by, maintain_order=True)

@@ -10,9 +10,6 @@ _FLOWS = ("eaten", "basic", "action", "forgiven", "capped", "lost", "shared", "h
 def energy_budget(population: pl.DataFrame) -> dict[str, float] | None:
     """The budget over the given intervals, per 1000 steps lived by an agent.
 
-    Args:
-        population: rows of the table `population` of one species of one world.
-
     Returns:
         eaten, taken up with food, where poison counts negative; basic and action, charged for living and for action;
         forgiven, charged but not paid, because energy cannot fall below 0; capped, eaten but destroyed at the capacity

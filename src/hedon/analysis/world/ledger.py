@@ -30,10 +30,6 @@ def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> dict[str, fl
     held at the end = held before + eaten + hunted + forgiven − basic − action − damage − capped − lost, in each
     interval.
 
-    Args:
-        population: rows of one species of one world, by step.
-        agents: rows of the same species and world.
-
     Returns:
         Sums over the run [energy]: initial, held by the founders at birth, None where their rows are missing, as in a
         branch; each flow that the world has, by the name of its column without `energy_`; shared, given by parents to
@@ -55,10 +51,6 @@ def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> dict[str, fl
 
 def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) -> NDArray[np.float64]:
     """By how much each interval of one species leaves its ledger open, (rows,) [energy]; see `world_ledger`.
-
-    Args:
-        population: rows of one species of one world, by step.
-        agents: rows of the same species and world; None where they are not known.
 
     Returns:
         NaN for the first interval where the energy held before it is not known.

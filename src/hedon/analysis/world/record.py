@@ -150,12 +150,7 @@ Conditions = Mapping[str, Sequence[WorldRecord]]
 
 
 def with_roles(rows: Iterable[Mapping[str, Any]], conditions: Conditions) -> list[dict[str, Any]]:
-    """Rows that name a condition and a weight, each with what its gene is for, as `Gene.role` has it.
-
-    Args:
-        rows: values by column, `condition` and `weight` among them.
-        conditions: the worlds that they are of.
-    """
+    """Rows that name a condition and a weight, each with what its gene is for, as `Gene.role` has it."""
     found = []
     for row in rows:
         at, told = list(row).index("weight") + 1, list(row.items())
@@ -276,14 +271,7 @@ def _planned_step(run: Run, population: pl.DataFrame) -> int:
 
 
 def gone_step(run: Run, index: int, agents: pl.DataFrame, population: pl.DataFrame) -> int | None:
-    """At which step nobody was left of one species of a world [step]; None while somebody lives.
-
-    Args:
-        run: whose world it is.
-        index: of the world.
-        agents: rows of the species in that world.
-        population: likewise.
-    """
+    """At which step nobody was left of one species of a world [step]; None while somebody lives."""
     known = run.manifest.extinct_steps[index] if run.manifest.extinct_steps else None
     if not run.columns.several:  # the world's end is that of its species
         return extinct_step(population) if known is None else known

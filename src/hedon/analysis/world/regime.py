@@ -67,14 +67,6 @@ def regimes(
 ) -> list[dict[str, Any]]:
     """The regimes of a world over time.
 
-    Args:
-        population: its rows of the table `population`.
-        config: its settings.
-        intervals: into how many the rows are divided, at most; they have equal lengths, but for the rows' own. A last
-            one shorter than a window belongs to the one before, unless the world dies out in it: it is too short for
-            rates.
-        species: whose rows they are; by default the first.
-
     Returns:
         Of each interval what `interval_regime` gives.
     """
@@ -91,11 +83,6 @@ def regimes(
 
 def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> dict[str, Any]:
     """The regime over some rows of the table `population` of one species of a world that follow one another.
-
-    Args:
-        rows: of the table `population`, in order.
-        config: of the world.
-        species: whose rows they are.
 
     Returns:
         step, the end of the interval, and steps, its length [step]; regime, one of `REGIMES`; and the rates hunger,

@@ -52,10 +52,6 @@ def by_species(rows: pl.DataFrame, columns: Columns) -> dict[str, pl.DataFrame]:
 def kinds(columns: Columns, config: Config | None = None) -> Mapping[str, Kind]:
     """What each species of a run eats and inherits, by name.
 
-    Args:
-        columns: of the run. Where there is one species, all of them are its own.
-        config: of the run; needed where there are several species.
-
     Raises:
         ArgumentError: There are several species and no config.
     """

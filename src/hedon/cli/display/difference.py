@@ -15,10 +15,6 @@ SHOWN = 6
 def show_difference(a: Path, b: Path) -> bool:
     """Compares two runs, their worlds by seeds, as far as both have records.
 
-    Args:
-        a: Folder of a run, finished or not.
-        b: Of another one.
-
     Returns:
         Whether settings and records agree; versions and machines are told, and do not count.
 

@@ -25,13 +25,7 @@ class FilmDisplay(Screen):
         self._due = self._begun + self._gap
 
     def update(self, number: int, pictures: int, step: int) -> None:
-        """Shows how far the video is, if enough time has passed.
-
-        Args:
-            number: Pictures made so far.
-            pictures: Of the whole video.
-            step: That the last one shows.
-        """
+        """Shows how far the video is, if enough time has passed."""
         if self.is_due():
             left = (time.monotonic() - self._begun) / number * (pictures - number)
             seen = f"{number / self._rate:.0f} s of video"

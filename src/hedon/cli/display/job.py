@@ -41,12 +41,7 @@ class JobDisplay(Screen):
         self._seen = deque([(time.monotonic(), 0)])
 
     def update(self, job: Job, moment: Moment) -> None:
-        """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute.
-
-        Args:
-            job: That goes on.
-            moment: How far it is.
-        """
+        """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute."""
         if not self._moments and not self._ended:  # until then workers started
             self._seen = deque([(time.monotonic() - moment.seconds, 0)])
         self._moments[job.folder] = moment
@@ -58,12 +53,7 @@ class JobDisplay(Screen):
             self._show()
 
     def end(self, job: Job, outcome: Outcome) -> None:
-        """Notes the end of a run and prints a line that says how it ended.
-
-        Args:
-            job: That ended.
-            outcome: How it ended.
-        """
+        """Notes the end of a run and prints a line that says how it ended."""
         moment = self._moments.pop(job.folder, None)
         done, whole = self._done.pop(job.folder, 0), outcome.status == "finished"
         self._ended += 1

@@ -44,12 +44,7 @@ class Screen:
         return self._clock() >= self._due
 
     def show(self, line: Callable[[], str], picture: Callable[[], RenderableType] | None = None) -> None:
-        """Shows a picture on a terminal, prints a line elsewhere; only the one that is shown is made.
-
-        Args:
-            line: Makes the line, or several.
-            picture: Makes the picture; by default the line.
-        """
+        """Shows a picture on a terminal, prints a line elsewhere; only the one that is shown is made."""
         self._due = self._clock() + self._gap
         if self._live is None:
             self._console.print(Text(line()), soft_wrap=True)

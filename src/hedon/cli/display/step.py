@@ -28,13 +28,7 @@ class StepDisplay(Screen):
         self._what, self._begun = what, clock()
 
     def __call__(self, done: int, of: int, step: str) -> None:
-        """Says which step comes next, and by the time of those before how long all others take.
-
-        Args:
-            done: steps.
-            of: how many there are.
-            step: the next one.
-        """
+        """Says which step comes next, and by the time of those before how long all others take."""
         seconds = self._clock() - self._begun
         if not self.is_due() or (self._live is None and seconds < QUIET_SECONDS):
             return

@@ -29,11 +29,7 @@ _WORLD_COLUMNS = {  # key of a world: header
 
 
 def summary_table(summary: Mapping[str, Any]) -> Group:
-    """What `hedon run` and `hedon report` print at the end: where there are several species, of each.
-
-    Args:
-        summary: of `summary.summarize`, or as read from `summary.json`.
-    """
+    """What `hedon run` and `hedon report` print at the end: where there are several species, of each."""
     notes = []
     if summary["extinct_worlds"]:
         notes.append(
@@ -59,11 +55,7 @@ def summary_table(summary: Mapping[str, Any]) -> Group:
 
 
 def answer_lines(answers: Mapping[str, Sequence[str]]) -> Iterator[Text]:
-    """What `hedon run` and `hedon report` say last: what evolved, in words.
-
-    Args:
-        answers: by condition, as `analysis.json` has them.
-    """
+    """What `hedon run` and `hedon report` say last: what evolved, in words."""
     for condition, lines in answers.items():
         yield Text(f"What evolved in {condition}?", style="bold")
         yield from (Text(f"  {line}") for line in lines)

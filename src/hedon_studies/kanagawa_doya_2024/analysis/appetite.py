@@ -44,11 +44,6 @@ class AppetiteBin:
 def appetite(world: WorldRecord, kind: str = "normal", edges: Sequence[float] = EDGES) -> list[AppetiteBin]:
     """Food eaten by agents of one world, by their weight for it; bins with too few agents are left out.
 
-    Args:
-        world: a world with its agents.
-        kind: the food, as named in the config; its weight is the column `w_<kind>`.
-        edges: bounds of the bins of weights, ascending; what lies outside goes into the first or the last bin.
-
     Returns:
         A bin for each pair of neighboring edges, of the dead that lived for `WINDOWS` windows of learning or longer.
     """

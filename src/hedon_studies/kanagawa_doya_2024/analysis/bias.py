@@ -43,11 +43,6 @@ Drift = dict[str, Any]
 def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Drift | None:
     """Predicts where mutation alone carries a gene, and compares it with what happened.
 
-    Args:
-        world: a world with its agents.
-        weight: a genome column.
-        rng: source of chance for the walks.
-
     Returns:
         weight, the genome column; births, with a known mutation; numbers of births within a window, so entries of the
         table; bounds, entries of which only a lower bound is known, since all their children were clipped;
@@ -96,10 +91,6 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Dri
 
 def compare(drifts: Sequence[Drift], comparison: str) -> dict[str, Any]:
     """Correlates what is predicted with what is seen, over worlds and genes.
-
-    Args:
-        drifts: one per world and gene.
-        comparison: a key of `COMPARISONS`.
 
     Returns:
         What `prediction` gives.

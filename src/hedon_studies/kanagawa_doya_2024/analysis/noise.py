@@ -66,10 +66,6 @@ def mutations(world: WorldRecord, weight: str) -> Mutations:
     """All recorded mutations of one gene.
 
     Births after a gap in the records have no known number, so only those before the first are taken.
-
-    Args:
-        world: a world with its agents.
-        weight: a genome column.
     """
     whole = np.cumprod(world.agents["agent_id"].to_numpy() == np.arange(world.agents.height)).sum()
     agents = world.agents.head(int(whole))

@@ -19,10 +19,6 @@ FEWEST = 3
 def prediction(predicted: Iterable[float], seen: Iterable[float]) -> dict[str, Any]:
     """Compares pairs; those without both values are left out.
 
-    Args:
-        predicted: what was expected of each.
-        seen: what happened, in the same order.
-
     Returns:
         pairs, that have both values; correlation, Pearson's; rank_correlation, Spearman's, which a single large table
         does not rule; slope of seen = slope · predicted, by least squares through the origin, with low and high, bounds

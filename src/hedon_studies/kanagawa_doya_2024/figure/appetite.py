@@ -29,10 +29,6 @@ def draw_appetite(bins: Mapping[str, Sequence[Sequence[AppetiteBin]]], histories
     """Left: foods per 1000 steps against the weight of food, by condition; right: its mean over time.
 
     Thin lines are worlds; thick lines are means over the worlds, where more than half of them have the bin.
-
-    Args:
-        bins: per condition and world.
-        histories: per condition, of `population.history`.
     """
     with styled():
         figure = new_figure(9.0, 3.5)

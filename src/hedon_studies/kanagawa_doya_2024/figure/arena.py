@@ -38,9 +38,6 @@ def draw_arenas(rows: Sequence[Sequence[ArenaPanel]]) -> Figure:
     """Draws arenas side by side at one scale: walls, agents, foods, and the law by which food is placed.
 
     Above each stand its size and numbers, and of each kind of food its energy and the most that the supply holds.
-
-    Args:
-        rows: of panels; the first must leave the place of a panel free at its right, for the legend.
     """
     columns = max(len(rows[0]) + 1, *(len(row) for row in rows))
     cell = (_WIDTH - _GAP) / columns

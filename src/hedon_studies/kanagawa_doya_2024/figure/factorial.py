@@ -24,11 +24,6 @@ def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], measures: Sequen
     """A panel per measure, a line per cell: a point per world, a bar for their mean.
 
     Means of measures that are compared as ratios are geometric. Hollow points are worlds that died out.
-
-    Args:
-        worlds: one row per world: condition, seed, died_out and a column per measure.
-        conditions: in the order of the lines.
-        measures: that are drawn.
     """
     with styled():
         figure, panels = _panels(measures, conditions)
@@ -62,11 +57,6 @@ def draw_effects(effects: pl.DataFrame, names: Sequence[str], measures: Sequence
 
     The vertical line is where nothing is changed: 0, or a ratio of 1. Filled points are effects whose corrected
     p is at most 0.05. An interval that reaches far beyond the estimates is cut off at an arrow.
-
-    Args:
-        effects: one row per measure and effect: measure, effect, estimate, low, high, p_holm, seed_low, seed_high.
-        names: of the effects, in the order of the lines.
-        measures: that are drawn.
     """
     with styled():
         figure, panels = _panels(measures, names)

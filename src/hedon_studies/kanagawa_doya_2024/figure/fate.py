@@ -28,10 +28,6 @@ def draw_fates(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Figure:
     """Agents alive, weight of food, weight of action and neutral marker over time: a line per world, colored by fate.
 
     A cross marks where a world ends before the longest.
-
-    Args:
-        worlds: of one setting.
-        fates: theirs.
     """
     populations = [world.population.with_columns(world=pl.lit(i, pl.Int32)) for i, world in enumerate(worlds)]
     names = ("w_normal", "w_action", "neutral_1")

@@ -22,12 +22,7 @@ _LINEAR = 0.003
 
 
 def draw_predictions(conditions: Mapping[str, Sequence[Drift]], titles: Mapping[str, str]) -> Figure:
-    """A panel per comparison; a color per condition, a mark per gene. The line is where both are equal.
-
-    Args:
-        conditions: per label, all genes of all its worlds.
-        titles: per genome column.
-    """
+    """A panel per comparison; a color per condition, a mark per gene. The line is where both are equal."""
     colors = dict(zip(conditions, _COLORS, strict=False))
     shown = {label: drifts for label, drifts in conditions.items() if drifts}
     with styled():
