@@ -70,7 +70,7 @@ def report_pages(analysis: Analysis, figures: Sequence[FigureFile]) -> tuple[str
 
 
 def render(template: str, context: Mapping[str, Any]) -> str:
-    """A page from a template; whatever the template prints is escaped, except what it marks as `verbatim` or `prose`."""
+    """A page from a template; what it prints is escaped unless marked as `verbatim` or `prose`."""
     is_html = template.endswith(".html.j2")
     environment = Environment(
         loader=PackageLoader("hedon.report", "template"),
