@@ -74,6 +74,7 @@ MORE = (
     "machine/",
     "property/test_damaged_file.py",
     "property/test_untrusted_checkpoint.py",
+    "repository/test_device_text.py",
     "repository/test_docs.py",
     "repository/test_notebooks.py",
     "repository/test_site.py",
