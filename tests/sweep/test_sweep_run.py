@@ -1,5 +1,6 @@
 """A sweep gives the same table whoever runs it, and however often it is killed."""
 
+import json
 import os
 import pickle
 import signal
@@ -217,6 +218,13 @@ def test_the_commands_report_what_was_made(tmp_path):
     for name in ("curve-energy-basic-cost", "curve-birth-kappa", "map-energy-basic-cost-birth-kappa-alive_mean"):
         assert (Path(place) / "report" / f"{name}.svg").stat().st_size > 5000
         assert f"({name}.svg)" in page
+    found = json.loads((Path(place) / "report" / "report.json").read_text())["tables"]["response"]["rows"]
+    (row,) = (r for r in found if (r["energy.basic_cost"], r["birth.kappa"], r["measure"]) == (0.01, 0.1, "alive_mean"))
+    own = table.filter((pl.col("energy.basic_cost") == 0.01) & (pl.col("birth.kappa") == 0.1))["alive_mean"]
+    assert (row["mean"], row["worlds"]) == (pytest.approx(own.mean()), 2)
+    said("sweep", "report", place, "--only", "extinct")
+    left = {path.stem for path in (Path(place) / "report").glob("*.svg")}
+    assert left == {"curve-energy-basic-cost", "curve-birth-kappa", "map-energy-basic-cost-birth-kappa-extinct"}
     done = CliRunner().invoke(app, ["sweep", "report", place, "--only", "alive_maen"])
     assert "did you mean alive_mean?" in str(done.exception)
 

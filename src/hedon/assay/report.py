@@ -43,7 +43,7 @@ def assay_answer(
         ],
     }
     title = f"{kind.capitalize()}: {config.name} ({config.fidelity})"
-    return Answer(kind, title, {**head, **content}, tables, intro, figure, files or {})
+    return Answer(kind, title, {**head, **content}, tables, intro, {kind: figure}, files or {})
 
 
 def world_table(rows: Sequence[Mapping[str, Any]]) -> ResultTable:

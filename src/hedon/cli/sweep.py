@@ -163,14 +163,16 @@ def report(
       hedon sweep report sweeps/cost
       hedon sweep report sweeps/cost --only alive_mean,w_action_mean
     """
-    from hedon.compare.report import write_report
+    from hedon.compare.report import sweep_answer
+    from hedon.report.answer import write_answer
     from hedon.sweep.collect import collect as write_table
 
     made, store = _opened(place)
     names = [name.strip() for name in only.split(",")] if only else []
     folder = out or (store.folder or Path("sweeps") / made.name) / "report"
-    files = write_report(made, write_table(made, store), folder, names)
-    make_console().print(f"wrote {files[0]} and {len(files) - 1} figures beside it", soft_wrap=True)
+    found = sweep_answer(made, write_table(made, store), names)
+    data, page, *figures = write_answer(folder, found)
+    make_console().print(f"wrote {page}, {data} and {len(figures)} figures beside them", soft_wrap=True)
 
 
 def _written(file: Path, out: str | None, *, skip_invalid: bool) -> "tuple[SweepPlan, Store]":

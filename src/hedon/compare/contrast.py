@@ -169,7 +169,7 @@ def compare_answer(
     intro = f"{by}: {names[1]} against {names[0]}"
     intro += f", worlds of {worlds.steps:,} steps." if worlds.steps else "."
     title = f"{worlds.name}: {by}, {names[0]} and {names[1]}"
-    return Answer("compare", title, content, tables, intro, draw_contrasts(found, by, names))
+    return Answer("compare", title, content, tables, intro, {"compare": draw_contrasts(found, by, names)})
 
 
 def _contrasts(found: Sequence[Compared], names: Sequence[str], by: str, others: Sequence[str]) -> ResultTable:

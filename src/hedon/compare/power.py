@@ -126,7 +126,7 @@ def power_answer(
     intro = f"From {pilot}. " if pilot else ""
     intro += f"The tests of `hedon compare`, at {level:g}, find an effect with chance {power:g}."
     figure = draw_power(found, effects, power, level)
-    return Answer("power", "How many worlds are needed", content, tables, intro, figure)
+    return Answer("power", "How many worlds are needed", content, tables, intro, {"power": figure})
 
 
 def _needed(found: Sequence[PilotSpread], effects: Sequence[float], power: float, level: float) -> ResultTable:

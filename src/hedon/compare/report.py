@@ -3,7 +3,6 @@
 import re
 from collections.abc import Mapping, Sequence
 from itertools import combinations
-from pathlib import Path
 from typing import Any
 
 import polars as pl
@@ -13,30 +12,26 @@ from hedon.analysis.result import ResultTable, make_table
 from hedon.compare.error import CompareError
 from hedon.compare.figure import draw_curves, draw_map
 from hedon.compare.response import points, responses
-from hedon.figure.style import save_figure
-from hedon.record.atomic import write_atomically
-from hedon.record.lock import one_writer
-from hedon.report.markdown import pipe_table
-from hedon.report.table import cells
+from hedon.report.answer import Answer
 from hedon.statistic.interval import Interval
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.sweep.plan import SweepPlan
 from hedon.text import count
 
-PAGE = "report.md"
 MOST_CELLS = 400
 """Most cells of a map, and most settings of the page's table."""
 
 
-def write_report(plan: SweepPlan, table: pl.DataFrame, folder: Path, only: Sequence[str] = ()) -> list[Path]:
-    """Writes response curves for each factor, maps for each two that are crossed, and a page that shows them.
+def sweep_answer(plan: SweepPlan, table: pl.DataFrame, only: Sequence[str] = ()) -> Answer:
+    """Response curves for each factor of a sweep, maps for each two that are crossed, and a table of every response.
 
-    Returns:
-        The files written, the page first.
+    Args:
+        plan: Of the sweep.
+        table: Of its worlds so far.
+        only: Columns of the table to show; by default the usual ones.
 
     Raises:
-        CompareError: there is no world yet, or a column is not one.
-        RecordError: the folder cannot be written.
+        CompareError: There is no world yet, or a column is not one of numbers.
     """
     if table.is_empty():
         raise CompareError("no batch of the sweep is done yet: there is nothing to report")
@@ -47,17 +42,27 @@ def write_report(plan: SweepPlan, table: pl.DataFrame, folder: Path, only: Seque
         figures[f"curve-{_slug(factor)}"] = draw_curves(table, factor, shown, ranged=factor in plan.ranged)
     for pair in _crossed(table, varied):
         for name, title in shown.items():
-            figures[f"map-{_slug(pair[0])}-{_slug(pair[1])}-{name.replace('.', '-')}"] = draw_map(
-                table, pair, name, title
-            )
-    with one_writer(folder, "the report"):
-        for stale in [*folder.glob("curve-*.svg"), *folder.glob("map-*.svg")]:
-            if stale.stem not in figures:  # of a plan before
-                stale.unlink()
-        files = [save_figure(figure, folder / f"{name}.svg") for name, figure in figures.items()]
-        page = _page(plan, table, shown, list(figures)).encode()
-        write_atomically(folder / PAGE, lambda file: file.write(page))
-    return [folder / PAGE, *files]
+            stem = f"map-{_slug(pair[0])}-{_slug(pair[1])}-{name.replace('.', '-')}"
+            figures[stem] = draw_map(table, pair, name, title)
+    intro = (
+        f"{table.height} of {count(plan.worlds, 'world')} ({count(len(plan.conditions), 'setting')} x "
+        f"{count(len(plan.seeds), 'seed')}) of {count(plan.steps, 'step')}; {int(table['extinct'].sum())} died out"
+        f"{_alone(table)}. Intervals are of 95 %, over worlds, from {FOR_INTERVAL} worlds on."
+    )
+    content = {"sweep": plan.name, "steps": plan.steps, "factors": list(plan.factors)}
+    tables = [settings_table(plan, table, shown), _responses_table(plan, table, shown)]
+    return Answer("report", f"Sweep {plan.name}", content, tables, intro, figures)
+
+
+def _responses_table(plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str]) -> ResultTable:
+    """Every mean with its interval, a row per setting and measure, for the file."""
+    factors = list(plan.factors)
+    rows = [
+        {**dict(zip(factors, point.at, strict=True)), "measure": name, **vars(point.mean)}
+        for name in shown
+        for point in points(table, factors, name)
+    ]
+    return make_table("response", "Means over worlds", rows, shown=False)
 
 
 def _crossed(table: pl.DataFrame, factors: Sequence[str]) -> list[tuple[str, str]]:
@@ -68,21 +73,6 @@ def _crossed(table: pl.DataFrame, factors: Sequence[str]) -> list[tuple[str, str
         if cells <= MOST_CELLS and table.select(first, second).unique().height == cells:
             pairs.append((first, second))
     return pairs
-
-
-def _page(plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str], figures: Sequence[str]) -> str:
-    lines = [
-        f"# Sweep {plan.name}",
-        "",
-        f"{table.height} of {count(plan.worlds, 'world')} ({count(len(plan.conditions), 'setting')} x "
-        f"{count(len(plan.seeds), 'seed')}) of {count(plan.steps, 'step')}; {int(table['extinct'].sum())} died out"
-        f"{_alone(table)}. Intervals are of 95 %, over worlds, from {FOR_INTERVAL} worlds on.",
-        "",
-    ]
-    if plan.factors and len(plan.conditions) <= MOST_CELLS:
-        lines += [pipe_table(*cells(settings_table(plan, table, shown)))]
-    lines += [line for name in figures for line in (f"![{name}]({name}.svg)", "")]
-    return "\n".join(lines).rstrip() + "\n"
 
 
 def _alone(table: pl.DataFrame) -> str:

@@ -1,6 +1,7 @@
-"""Writes what one question found: a JSON summary, a page, a figure."""
+"""Writes what one question found: a JSON summary, a page, figures."""
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,13 +26,13 @@ class Answer:
     """What one question found, as it is printed and written.
 
     Attributes:
-        name: of its files.
-        title: of the page.
-        content: what the summary holds besides the tables.
-        tables: for the terminal, the summary and the page.
-        intro: first lines of the page, in Markdown.
-        figure: its picture.
-        files: further files, by name.
+        name: The stem of its files.
+        title: Of the page.
+        content: What the summary contains besides the tables.
+        tables: For the terminal, the summary and the page.
+        intro: First lines of the page, in Markdown.
+        figures: By the stems of their files.
+        files: Further files, by name.
     """
 
     name: str
@@ -39,24 +40,39 @@ class Answer:
     content: Mapping[str, Any]
     tables: Sequence[ResultTable]
     intro: str
-    figure: Figure
+    figures: Mapping[str, Figure]
     files: Mapping[str, str] = field(default_factory=dict)
 
 
 def write_answer(folder: Path, answer: Answer) -> list[Path]:
-    """Writes the files of an answer over what is there, and returns their paths.
+    """Writes the files of an answer over those of an earlier one, and returns their paths, the figures last.
 
     Raises:
         RecordError: A file cannot be written.
     """
     name, tables = answer.name, answer.tables
     shown = {each.name: {"title": each.title, "note": each.note, "rows": each.rows.to_dicts()} for each in tables}
-    summary = json.dumps(plain({**answer.content, "tables": shown}), indent=1, ensure_ascii=False, allow_nan=False)
-    lines = [f"# {answer.title}", "", answer.intro, "", f"![{answer.title}]({name}.svg)", ""]
+    content = {**answer.content, "figures": list(answer.figures), "tables": shown}
+    summary = json.dumps(plain(content), indent=1, ensure_ascii=False, allow_nan=False)
+    lines = [f"# {answer.title}", "", answer.intro, ""]
+    lines += [line for stem in answer.figures for line in (f"![{answer.title}: {stem}]({stem}.svg)", "")]
     for each in (table for table in tables if table.shown):
         lines += [f"## {each.title}", "", pipe_table(*cells(each)), "", *([each.note, ""] if each.note else [])]
     files = {f"{name}.json": summary + "\n", f"{name}.md": "\n".join(lines).rstrip() + "\n", **answer.files}
     with one_writer(folder, "the answer"):
+        for stale in _earlier_figures(folder / f"{name}.json") - answer.figures.keys():
+            (folder / f"{stale}.svg").unlink(missing_ok=True)
         for each, text in files.items():
             write_atomically(folder / each, lambda file, text=text: file.write(text.encode()))
-        return [*(folder / each for each in files), save_figure(answer.figure, folder / f"{name}.svg")]
+        drawn = [save_figure(figure, folder / f"{stem}.svg") for stem, figure in answer.figures.items()]
+        return [*(folder / each for each in files), *drawn]
+
+
+def _earlier_figures(summary: Path) -> set[str]:
+    """The figures of the answer that a file holds; none if it is not hedon's."""
+    try:
+        content = json.loads(summary.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return set()
+    stems = content.get("figures") if isinstance(content, dict) else None
+    return {stem for stem in stems if re.fullmatch(r"[\w-]+", str(stem))} if isinstance(stems, list) else set()
