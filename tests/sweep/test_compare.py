@@ -2,6 +2,7 @@
 
 import json
 import math
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -303,6 +304,25 @@ def test_a_folder_of_runs_is_compared_by_their_conditions(two_runs, tmp_path):
     }
     message = "holds runs of several configs"
     assert message in str(CliRunner().invoke(app, ["compare", str(two_runs), str(two_runs / "cheap")]).exception)
+
+
+def test_a_damaged_run_is_not_compared(two_runs, tmp_path):
+    shutil.copytree(two_runs / "dear", tmp_path / "dear")
+    part = next((tmp_path / "dear" / "population").glob("*.parquet"))
+    part.write_bytes(part.read_bytes()[:-40])
+    done = CliRunner().invoke(app, ["compare", str(two_runs / "cheap"), str(tmp_path / "dear")])
+    assert f"{part} is damaged" in str(done.exception)
+
+
+def test_a_killed_run_is_compared_as_far_as_all_of_its_records_reach(two_runs, tmp_path):
+    shutil.copytree(two_runs / "dear", tmp_path / "dear")
+    manifest = tmp_path / "dear" / "manifest.json"
+    manifest.write_text(manifest.read_text().replace('"finished"', '"running"'))
+    words = ["compare", str(two_runs / "cheap"), str(tmp_path / "dear"), "--out", str(tmp_path / "answer")]
+    call(*words)
+    assert json.loads((tmp_path / "answer" / "compare.json").read_text())["steps"] == 1024
+    (tmp_path / "dear" / "agents" / "living.parquet").unlink()
+    assert "has no step yet at which the records know all agents" in str(CliRunner().invoke(app, words).exception)
 
 
 def test_conditions_of_a_study_are_compared_and_serve_as_a_pilot(tmp_path, monkeypatch):

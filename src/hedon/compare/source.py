@@ -107,12 +107,19 @@ def _run_folders(source: str) -> list[Path]:
 
 
 def _records(folders: Sequence[Path]) -> list[WorldRecord]:
-    return read_worlds(open_run(each) for each in folders)
+    """The worlds of some runs; those of a run that goes on or was killed end where all of their records reach."""
+    runs = [open_run(each).load() for each in folders]
+    for damaged in (path for run in runs for path in run.damaged_parts()):
+        raise CompareError(f"{damaged} is damaged, so its worlds lack rows: `hedon check` says more")
+    whole = {run.path.name for run in runs if run.manifest.status in ("finished", "interrupted")}
+    return [world if world.run in whole else world.until(world.recorded_step()) for world in read_worlds(runs)]
 
 
 def _runs_table(source: str, records: Sequence[WorldRecord]) -> WorldTable:
     """The worlds of some runs, up to the step that all of them were planned to reach."""
     end = min(world.end_step for world in records)
+    if end < 1:
+        raise CompareError(f"{source}: has no step yet at which the records know all agents of every world")
     worlds: dict[tuple[str, int], list[WorldRecord]] = {}
     for world in records:
         condition = world.condition.removesuffix(f": {world.species}")
