@@ -55,7 +55,7 @@ static: tools $(UV)
 sanitized: tools $(UV)
 	$(RUN) python tests/sanitize.py asan
 
-# The same questions asked hundreds of times, and those that take minutes: before a release, beside `make test` and `make test-more`.
+# The same questions asked hundreds of times, and those that take minutes: before a release, in addition to `make test` and `make test-more`.
 test-long: sync
 	$(RUN) $(BROWSER) $(SITE) $(LONG) pyright
 	HEDON_NODES=10 HEDON_FUZZ=3000 HEDON_DOOR=20000 HEDON_KILLS=200 HEDON_REPORTS=20 HEDON_DAMAGED=20 \

@@ -100,7 +100,7 @@ SHARES = {"test_calibration.py": 4, "test_combination.py": 3, "test_reference_mo
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks what `make test` leaves to `make test-more`; long files come first, so that no worker ends alone."""
+    """Marks the tests of `make test-more`; long files come first, so that workers finish together."""
     seen = dict.fromkeys(SHARES, 0)
     for item in items:
         path = item.path.relative_to(TESTS).as_posix()

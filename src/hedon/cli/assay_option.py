@@ -50,7 +50,7 @@ class _Worlds:
 
 @dataclass(frozen=True)
 class AssayOptions(ClusterOptions, _Worlds):
-    """The options of every assay: its worlds, then where they are run."""
+    """The options of every assay: its worlds, and how they are run."""
 
     def config(self, source: str) -> "Config":
         """The condition with its changes. ConfigError: it cannot be used."""

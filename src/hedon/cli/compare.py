@@ -26,14 +26,14 @@ def compare(
     ] = None,
     between: Between = None,
     only: Only = None,
-    paired: Annotated[bool, typer.Option("--paired/--unpaired", help="Compare in pairs where seeds are equal.")] = True,
+    paired: Annotated[bool, typer.Option("--paired/--unpaired", help="Compare in pairs if seeds are equal.")] = True,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the answer; by default SOURCE/compare, or compare for two sources.")
     ] = None,
 ) -> None:
     """Compare two conditions: how much they differ, how certain that is, and how likely by chance alone.
 
-    Worlds are the units, in pairs where their seeds are equal. Prints the difference of each measure with its interval,
+    Worlds are the units, in pairs if their seeds are equal. Prints the difference of each measure with its interval,
     the effect size, and a permutation test that is corrected for the number of measures. Runs are compared at their
     common length; a sweep can still be running. docs/guide/compare.md explains it.
 

@@ -40,7 +40,7 @@ def power(
 ) -> None:
     """Say how many worlds are needed to see an effect, from how much the worlds of a pilot differ.
 
-    Without --effect it says which effects various numbers of worlds would show. docs/guide/compare.md explains it.
+    Without --effect it lists the effects that various numbers of worlds would show. docs/guide/compare.md explains it.
 
     \b
     Examples:

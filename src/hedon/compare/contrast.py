@@ -1,4 +1,4 @@
-"""Do two conditions differ? Worlds are the units, in pairs where their seeds are equal."""
+"""Do two conditions differ? Worlds are the units, in pairs if their seeds are equal."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress

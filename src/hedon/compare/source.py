@@ -107,7 +107,7 @@ def _run_folders(source: str) -> list[Path]:
 
 
 def _records(folders: Sequence[Path]) -> list[WorldRecord]:
-    """The worlds of some runs; those of a run that goes on or was killed end where all of their records reach."""
+    """The worlds of some runs; if a run is unfinished, up to the last step that all of its records cover."""
     runs = [open_run(each).load() for each in folders]
     for damaged in (path for run in runs for path in run.damaged_parts()):
         raise CompareError(f"{damaged} is damaged, so its worlds lack rows: `hedon check` says more")

@@ -2,7 +2,6 @@
 
 import io
 import json
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -14,6 +13,7 @@ from hedon.error import ArgumentError
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
+from hedon.report.earlier import earlier_names
 from hedon.report.moment import unfinished
 from hedon.report.summary import plain
 from hedon.report.topic import TOPICS, Tell, require_topics, run_topics, tell_nobody
@@ -87,21 +87,11 @@ def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
         table.rows.write_csv(buffer)
         contents[f"{name}.csv"] = buffer.getvalue()
     with one_writer(folder, "the analysis"):
-        for name in _earlier_tables(folder) - analysis.tables.keys():
+        for name in earlier_names(folder / _JSON, "tables") - analysis.tables.keys():
             (folder / f"{name}.csv").unlink(missing_ok=True)
         for name, content in contents.items():
             write_atomically(folder / name, lambda file, content=content: file.write(content))
     return [folder / name for name in contents]
-
-
-def _earlier_tables(folder: Path) -> set[str]:
-    """Names of the tables that the analysis in a folder has; none where it is not hedon's."""
-    try:
-        content = json.loads((folder / _JSON).read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return set()
-    named = content.get("tables") if isinstance(content, dict) else None
-    return {name for name in named if re.fullmatch(r"[a-z0-9_]+", name)} if isinstance(named, dict) else set()
 
 
 def _analysis_json(analysis: Analysis) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """Writes what one question found: a JSON summary, a page, figures."""
 
 import json
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from hedon.analysis.result import ResultTable
 from hedon.figure.style import save_figure
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
+from hedon.report.earlier import earlier_names
 from hedon.report.markdown import pipe_table
 from hedon.report.summary import plain
 from hedon.report.table import cells
@@ -45,7 +45,7 @@ class Answer:
 
 
 def write_answer(folder: Path, answer: Answer) -> list[Path]:
-    """Writes the files of an answer over those of an earlier one, and returns their paths, the figures last.
+    """Writes the files of an answer, replacing an earlier one, and returns their paths, figures last.
 
     Raises:
         RecordError: A file cannot be written.
@@ -60,19 +60,9 @@ def write_answer(folder: Path, answer: Answer) -> list[Path]:
         lines += [f"## {each.title}", "", pipe_table(*cells(each)), "", *([each.note, ""] if each.note else [])]
     files = {f"{name}.json": summary + "\n", f"{name}.md": "\n".join(lines).rstrip() + "\n", **answer.files}
     with one_writer(folder, "the answer"):
-        for stale in _earlier_figures(folder / f"{name}.json") - answer.figures.keys():
+        for stale in earlier_names(folder / f"{name}.json", "figures") - answer.figures.keys():
             (folder / f"{stale}.svg").unlink(missing_ok=True)
         for each, text in files.items():
             write_atomically(folder / each, lambda file, text=text: file.write(text.encode()))
         drawn = [save_figure(figure, folder / f"{stem}.svg") for stem, figure in answer.figures.items()]
         return [*(folder / each for each in files), *drawn]
-
-
-def _earlier_figures(summary: Path) -> set[str]:
-    """The figures of the answer that a file holds; none if it is not hedon's."""
-    try:
-        content = json.loads(summary.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return set()
-    stems = content.get("figures") if isinstance(content, dict) else None
-    return {stem for stem in stems if re.fullmatch(r"[\w-]+", str(stem))} if isinstance(stems, list) else set()

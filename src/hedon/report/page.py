@@ -57,7 +57,7 @@ class FigureFile:
 
 
 def write_figure(folder: Path, condition: str, named: NamedFigure, path: str) -> FigureFile:
-    """Writes a figure beside a page."""
+    """Writes the file of a figure that a page shows."""
     svg = svg_bytes(named.figure)
     write_atomically(folder / path, lambda file: file.write(svg))
     return FigureFile(condition, named.question, path, svg, named.caption)

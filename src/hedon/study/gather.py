@@ -64,7 +64,7 @@ class Gathered:
         return ItemInputs(fidelity, {label: group for label, group in worlds.items() if group}, snapshots, frames)
 
     def demanded(self) -> list[WorldRecord]:
-        """Every world once, as long as the most demanding item asks for, named by the label of its condition."""
+        """Every world once, as long as the most demanding item needs, with the label of its condition."""
         labels = self._labels()
         return [
             replace(self.worlds[need.digest, seed, species].until(steps), condition=labels[need.digest, species])
