@@ -200,7 +200,7 @@ def _contrasts(found: Sequence[Compared], names: Sequence[str], by: str, others:
         f"Holm: corrected for these {len(found)} measures. Worlds that died out count if they have a value."
     )
     note += f" The conditions differ in {', '.join(others)} too: the design does not cross them." if others else ""
-    return make_table("contrast", f"Differences between values of {by}", rows, note)
+    return make_table("contrast", f"{names[1]} against {names[0]}", rows, note)
 
 
 def _extinct(first: pl.DataFrame, second: pl.DataFrame, names: Sequence[str]) -> list[ResultTable]:
