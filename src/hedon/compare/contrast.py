@@ -163,7 +163,7 @@ def compare_answer(
         known = [name for name in shown if first[name].count() and second[name].count()]
         shown = {name: shown[name] for name in known}
     found = compare(first, second, shown, held, paired=paired)
-    tables = [_contrasts(found, names, by, others), *_extinct(first, second, names)]
+    tables = [_contrasts(found, names, others), *_extinct(first, second, names)]
     content = {"source": worlds.name, "by": by, "between": list(levels), "also_differs": others}
     content |= {"steps": worlds.steps} if worlds.steps else {}
     intro = f"{by}: {names[1]} against {names[0]}"
@@ -172,7 +172,7 @@ def compare_answer(
     return Answer("compare", title, content, tables, intro, {"compare": draw_contrasts(found, by, names)})
 
 
-def _contrasts(found: Sequence[Compared], names: Sequence[str], by: str, others: Sequence[str]) -> ResultTable:
+def _contrasts(found: Sequence[Compared], names: Sequence[str], others: Sequence[str]) -> ResultTable:
     rows = []
     for each, corrected in zip(found, holm([each.contrast.p for each in found]), strict=True):
         contrast, values, second = each.contrast, each.matched.values, each.matched.others
