@@ -16,17 +16,17 @@ from resumed_run import SMALL
 
 from hedon.config import Config
 from hedon.config.validate import rebuild
+from hedon.ensemble.batch import WORK, batch_job
+from hedon.ensemble.batches import batch_jobs
+from hedon.ensemble.collect import collect
+from hedon.ensemble.job import Job, Outcome
+from hedon.ensemble.make import make_jobs
+from hedon.ensemble.plan import SweepFile, SweepPlan, load_plan, write_plan
+from hedon.ensemble.process import JobListener
+from hedon.ensemble.store import Store
 from hedon.experiment.plan import Moment
-from hedon.jobs.make import make_jobs
-from hedon.jobs.process import JobListener
-from hedon.jobs.store import Store
-from hedon.jobs.work import Job, Outcome
 from hedon.record.reader import open_run
-from hedon.sweep.collect import collect
-from hedon.sweep.plan import SweepFile, SweepPlan, load_plan, write_plan
 from hedon.sweep.read import read_sweep
-from hedon.sweep.run import open_tasks
-from hedon.sweep.work import WORK, make_task
 
 FACTORS = """
 [factor]
@@ -77,7 +77,7 @@ def run_sweep(
     display: JobListener | None = None,
 ) -> dict[str, Outcome]:
     """How each batch that was open ended, by name."""
-    with open_tasks(plan, store, checkpoint_seconds, on_cluster=ray is not None) as jobs:
+    with batch_jobs(plan, store, checkpoint_seconds, on_cluster=ray is not None) as jobs:
         outcomes = make_jobs(jobs, display or Silent(), workers, ray)
     return {folder.name: outcome for folder, outcome in outcomes.items()}
 
@@ -109,7 +109,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
     file = sweep_file(folder, steps)
     plan, store = planned(file, str(folder / "folder"))
     for batch in plan.batches():
-        make_task(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
+        batch_job(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
     remote, far = planned(file, url)
 
     class Stopping:
@@ -121,7 +121,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
 
     first = next(remote.batches())
     with pytest.raises(MachineDiedError):
-        make_task(url, remote, first, folder / "one machine", 0.0).make(1, Stopping())
+        batch_job(url, remote, first, folder / "one machine", 0.0).make(1, Stopping())
     assert far.names("state") == [f"{first.name}.zip"]
     assert far.names("results") == []
     begun: list[int] = []
@@ -132,11 +132,11 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
         def update(self, moment: Moment) -> None:
             begun.append(moment.first)
 
-    assert make_task(url, remote, first, folder / "another", 1e9).make(1, Watching()) == "finished"
+    assert batch_job(url, remote, first, folder / "another", 1e9).make(1, Watching()) == "finished"
     assert begun[0] > 0, "it was to go on from the state"
     assert far.names("state") == []
     for batch in remote.batches():
-        assert make_task(url, remote, batch, folder / f"rest-{batch.name}", 1e9).make(1, None) == "finished"
+        assert batch_job(url, remote, batch, folder / f"rest-{batch.name}", 1e9).make(1, None) == "finished"
     assert_same_table(table_of(url), table_of(store.location))
 
 
@@ -146,7 +146,7 @@ def assert_two_make_one(url: str, folder: Path, rest: str = FACTORS) -> None:
     file.write_text('keep = ["agents", "run"]\n' + file.read_text())
     plan, store = planned(file, str(folder / "folder"))
     for batch in plan.batches():
-        make_task(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
+        batch_job(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
     words = ["sweep", "run", str(file), "--out", url, "--workers", "1", "--checkpoint", "0"]
     start = "from hedon.cli.start import main; main()"
     both = [

@@ -32,10 +32,10 @@ from hedon.experiment.simulation import Simulation
 from hedon.export.indices import index_table
 from hedon.export.phylogeny import alife_table, last_step, newick, pedigree
 from hedon.export.table import TableName, table_of, write_table
+from hedon.measure.summary import summarize
 from hedon.record.reader import open_run
 from hedon.report.analysis import analyze, write_analysis
 from hedon.report.run import write_report
-from hedon.report.summary import summarize
 from hedon.video.moment import open_footage
 from hedon.view.index import RunIndex
 from hedon.view.page import to_json

@@ -11,10 +11,10 @@ from rich.console import Console
 
 from hedon.cli.display.job import JobDisplay
 from hedon.config import load_config
+from hedon.ensemble.job import Job, Outcome
+from hedon.ensemble.process import make_here, next_share
+from hedon.ensemble.run_job import RunJob
 from hedon.experiment.plan import Moment, RunPlan
-from hedon.jobs.process import make_here, next_share
-from hedon.jobs.run import RunJob
-from hedon.jobs.work import Job, Outcome
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import load_manifest
 

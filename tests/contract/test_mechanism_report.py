@@ -27,12 +27,11 @@ from hedon.assay.end import read_ends
 from hedon.cli.display.summary import summary_table
 from hedon.compare.response import responses
 from hedon.config.load import load_config
+from hedon.ensemble.row import world_rows
 from hedon.error import ArgumentError
+from hedon.measure.summary_key import CAUSE_KEYS, FARE_KEYS, HUNT_KEYS, MEAN_KEYS, SEVERAL_KEYS, WORLD_SEVERAL_KEYS
 from hedon.record.reader import Run, open_run
-from hedon.report.run import write_report
-from hedon.report.summary import summarize
-from hedon.report.summary_key import CAUSE_KEYS, FARE_KEYS, HUNT_KEYS, MEAN_KEYS, SEVERAL_KEYS, WORLD_SEVERAL_KEYS
-from hedon.sweep.row import world_rows
+from hedon.report.run import run_summary, write_report
 
 DIFFERENT = "species that differ in everything"
 
@@ -57,7 +56,7 @@ def fares(summary: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def test_each_species_has_its_own_numbers(run: Run) -> None:
-    summary, agents, population = summarize(run), run.agents(), run.population()
+    summary, agents, population = run_summary(run), run.agents(), run.population()
     for index, world in enumerate(summary["worlds"]):
         here = pl.col("world") == index
         lives, rows = (by_species(table.filter(here), run.columns) for table in (agents, population))
@@ -81,13 +80,13 @@ def test_the_guide_counts_the_living_of_each_species_as_the_summary_does(differe
     (block,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs/guide/species.md").read_text(), re.DOTALL)
     scope: dict[str, Any] = {}
     exec(block, scope)
-    for world in summarize(different)["worlds"]:
+    for world in run_summary(different)["worlds"]:
         told = scope["alive"](str(different.path), world["seed"])
         assert told == {name: fare["alive_mean"] for name, fare in world["species"].items()}
 
 
 def test_every_ledger_closes_and_its_sums_say_so(run: Run) -> None:
-    for fare in fares(summarize(run)):
+    for fare in fares(run_summary(run)):
         ledger = fare["ledger"]
         assert ledger["residual"] < 1e-6
         gained = ledger["initial"] + ledger["eaten"] + ledger.get("hunted", 0.0) + ledger["forgiven"]
@@ -96,7 +95,7 @@ def test_every_ledger_closes_and_its_sums_say_so(run: Run) -> None:
 
 
 def test_every_key_is_documented(run: Run) -> None:
-    summary = summarize(run)
+    summary = run_summary(run)
     assert json.loads(json.dumps(summary, allow_nan=False)) == summary
     if run.columns.several:
         assert set(summary) == set(SEVERAL_KEYS)
@@ -111,7 +110,7 @@ def test_every_key_is_documented(run: Run) -> None:
 
 def test_the_table_at_the_end_has_every_species(run: Run) -> None:
     console = Console(width=140, record=True, file=io.StringIO())
-    console.print(summary_table(summarize(run)))
+    console.print(summary_table(run_summary(run)))
     printed = console.export_text()
     for name in run.columns.species if run.columns.several else ():
         assert f"{name}: weights of those alive at the end" in printed
@@ -163,7 +162,7 @@ def test_a_world_knows_what_its_species_eat_and_inherit(different: Run) -> None:
 
 
 def test_a_sweep_has_columns_per_species(different: Run) -> None:
-    summary = summarize(different)
+    summary = run_summary(different)
     rows = world_rows(summary, ("a", "b"))
     table = pl.DataFrame(rows, infer_schema_length=None)
     assert table["prey.alive"].to_list() == [world["species"]["prey"]["alive"] for world in summary["worlds"]]
@@ -189,7 +188,7 @@ def test_a_notebook_shows_each_species(different: Run) -> None:
 
 def test_ends_are_those_of_one_species(different: Run, tmp_path: Path) -> None:
     config = mechanism_config(DIFFERENT)
-    (tmp_path / "summary.json").write_text(json.dumps(summarize(different)))
+    (tmp_path / "summary.json").write_text(json.dumps(run_summary(different)))
     for source in (different.path, tmp_path / "summary.json"):
         ends = read_ends(source, config, "hunter")
         assert len(ends) == 2
@@ -199,7 +198,7 @@ def test_ends_are_those_of_one_species(different: Run, tmp_path: Path) -> None:
 def test_one_species_keeps_the_keys_that_tools_read(tmp_path: Path) -> None:
     config = load_config("baseline", overrides=CROWDED)
     mechanism_run(replace(config), tmp_path / "run")
-    summary = summarize(open_run(tmp_path / "run"))
+    summary = run_summary(open_run(tmp_path / "run"))
     assert set(MEAN_KEYS) < set(summary)
     assert "species" not in summary
     ledger = ["initial", "eaten", "forgiven", "basic", "action", "capped", "lost", "shared", "final", "residual"]

@@ -16,7 +16,7 @@ from setting_page import values
 from sweep_case import condition_configs
 
 from hedon.config import load_config
-from hedon.sweep.plan import SweepFile
+from hedon.ensemble.plan import SweepFile
 from hedon.sweep.read import read_sweep
 
 ROOT = Path(__file__).parents[2]

@@ -19,14 +19,14 @@ from hedon.cli.main import app
 from hedon.compare.contrast import compare
 from hedon.compare.error import CompareError
 from hedon.compare.report import settings_table
-from hedon.jobs.store import Store
+from hedon.ensemble.collect import collect
+from hedon.ensemble.plan import load_plan
+from hedon.ensemble.store import Store
 from hedon.measure.catalogue import MEASURES
 from hedon.record.reader import open_run
 from hedon.report.table import cells
 from hedon.statistic.contrast import independent_contrast, paired_contrast
 from hedon.statistic.power import SIMULATED, contrast_power, worlds_needed
-from hedon.sweep.collect import collect
-from hedon.sweep.plan import load_plan
 
 SEEDS = 12
 EFFECT = 4.0

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from sweep_case import planned, sweep_file
 
+from hedon.ensemble.batch import WORK, batch_job
+from hedon.ensemble.lock import lock
+from hedon.ensemble.store import Store
 from hedon.error import HedonError
-from hedon.jobs.lock import lock
-from hedon.jobs.store import Store
-from hedon.sweep.work import WORK, make_task
 
 START = "from hedon.cli.start import main; main()"
 
@@ -59,7 +59,7 @@ def test_a_batch_waits_for_the_process_that_its_killed_sweep_left(tmp_path):
     """The process of a batch outlives that of its sweep for a moment, and still has its folder."""
     plan, store = planned(sweep_file(tmp_path, 640), str(tmp_path / "left"))
     batch = next(plan.batches())
-    task = make_task(store.location, plan, batch, tmp_path / "left" / WORK / batch.name, 1e9)
+    task = batch_job(store.location, plan, batch, tmp_path / "left" / WORK / batch.name, 1e9)
     holder = (
         "import sys, time; from pathlib import Path; from hedon.record.lock import FolderLock\n"
         "with FolderLock(Path(sys.argv[1])): print(flush=True); time.sleep(1.5)"

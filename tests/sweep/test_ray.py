@@ -20,11 +20,10 @@ from typing import Any
 import pytest
 from sweep_case import assert_same_table, planned, run_sweep, sweep_file, table_of, under_way
 
-from hedon.jobs.cluster import LOCAL, import_ray
-from hedon.jobs.retry import TRIES
-from hedon.jobs.store import Store
-from hedon.sweep.plan import load_plan
-from hedon.sweep.work import RUNS, make_task
+from hedon.ensemble.batch import RUNS, batch_job
+from hedon.ensemble.cluster import LOCAL, TRIES, import_ray
+from hedon.ensemble.plan import load_plan
+from hedon.ensemble.store import Store
 
 pytestmark = [
     pytest.mark.long,
@@ -50,7 +49,7 @@ def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("alone")
     plan, store = planned(file_of(folder), str(folder / "whole"))
     for batch in plan.batches():
-        make_task(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
+        batch_job(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
     return table_of(store.location)
 
 

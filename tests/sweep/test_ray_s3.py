@@ -21,8 +21,8 @@ from s3_place import use_server
 from sweep_case import assert_kept_whole, assert_same_table, planned, run_sweep, sweep_file, table_of
 from test_ray import KILLS, STEPS, parent, two_nodes
 
-from hedon.jobs.store import Store
-from hedon.sweep.work import STATE
+from hedon.ensemble.batch import STATE
+from hedon.ensemble.store import Store
 
 pytestmark = [
     pytest.mark.long,

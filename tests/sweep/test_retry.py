@@ -6,12 +6,12 @@ import zipfile
 import pytest
 from sweep_case import planned, sweep_file
 
-from hedon.jobs.retry import TRIES, RetryLimit
-from hedon.jobs.store import Store
-from hedon.sweep.work import STATE, Task, make_task
+from hedon.ensemble.batch import STATE, BatchJob, batch_job
+from hedon.ensemble.cluster import TRIES, RetryLimit
+from hedon.ensemble.store import Store
 
 
-def write_checkpoint(store: Store, task: Task, step: int) -> None:
+def write_checkpoint(store: Store, task: BatchJob, step: int) -> None:
     """What a batch leaves where it is kept: a file in its folder, or an archive behind a URL."""
     name = f"checkpoints/step-{step:010d}.npz"
     if store.folder is not None:
@@ -27,7 +27,7 @@ def write_checkpoint(store: Store, task: Task, step: int) -> None:
 @pytest.mark.parametrize("kind", ["folder", "url"])
 def test_a_batch_is_given_up_where_it_gets_no_further(tmp_path, kind):
     plan, store = planned(sweep_file(tmp_path), str(tmp_path / "place") if kind == "folder" else f"file://{tmp_path}/x")
-    one, other = (make_task(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches())
+    one, other = (batch_job(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches())
     retries = RetryLimit()
     assert [retries.may_go_on(one) for _ in range(TRIES)] == [True] * (TRIES - 1) + [False]
     for step in (0, 1024):
@@ -41,7 +41,7 @@ def test_the_reason_names_the_worlds_and_what_to_do(tmp_path):
     batch = next(plan.batches())
     cost = plan.conditions[batch.condition].settings["energy.basic_cost"]
     reason = RetryLimit().reason(
-        make_task(store.location, plan, batch, tmp_path, 1.0), RuntimeError("Out of memory.\nMore.")
+        batch_job(store.location, plan, batch, tmp_path, 1.0), RuntimeError("Out of memory.\nMore.")
     )
     assert f"lost {TRIES} times in a row without a new checkpoint, the last time with: Out of memory. Its" in reason
     assert f"worlds: energy.basic_cost = {cost}, seed 1, 2." in reason

@@ -25,8 +25,8 @@ from sweep_case import (
     table_of,
 )
 
-from hedon.jobs.store import PASSING, Store
-from hedon.sweep.work import make_task
+from hedon.ensemble.batch import batch_job
+from hedon.ensemble.store import PASSING, Store
 
 SERVER = shutil.which("s3s-fs") or shutil.which("s3s-fs", path=str(Path.home() / ".cargo" / "bin"))
 STEPS = 5_120
@@ -63,15 +63,15 @@ socket.socket.sendmsg = lambda self, parts, *rest: send_some(self, next(filter(l
 """
 """Ends this process by SIGKILL at a place of the talk with the server."""
 WRITER = """
-from hedon.jobs.store import Store
+from hedon.ensemble.store import Store
 
 Store(sys.argv[3]).write("results/one", b"new" * (int(sys.argv[2]) * 2 // 3))
 """
 MAKER = """
 from pathlib import Path
-from hedon.sweep.plan import load_plan
-from hedon.jobs.store import Store
-from hedon.sweep.work import make_task
+from hedon.ensemble.plan import load_plan
+from hedon.ensemble.store import Store
+from hedon.ensemble.batch import batch_job
 
 url, folder = sys.argv[3:]
 write = Store.write
@@ -83,7 +83,7 @@ def told_write(self, name, content):
 
 Store.write = told_write
 plan = load_plan(Store(url))
-make_task(url, plan, next(plan.batches()), Path(folder), 0.0).make(1, None)
+batch_job(url, plan, next(plan.batches()), Path(folder), 0.0).make(1, None)
 """
 
 pytestmark = [
@@ -174,14 +174,14 @@ def test_a_batch_that_is_killed_at_any_place_is_made_by_another(bucket, tmp_path
     file.write_text('keep = ["agents", "run"]\n' + file.read_text())
     plan, store = planned(file, str(tmp_path / "folder"))
     for batch in plan.batches():
-        make_task(store.location, plan, batch, tmp_path / batch.name, 1e9).make(1, None)
+        batch_job(store.location, plan, batch, tmp_path / batch.name, 1e9).make(1, None)
     remote, far = planned(file, bucket)
     first, second = remote.batches()
-    make_task(bucket, remote, second, tmp_path / "second", 1e9).make(1, None)
+    batch_job(bucket, remote, second, tmp_path / "second", 1e9).make(1, None)
     run_dying(MAKER, place, "0", bucket, tmp_path / "one machine")
     tables = [name for name in far.names("tables/agents") if first.name in name]
     assert (len(far.names("state")), len(tables), len(far.names("results")) - 1) == kept
-    assert make_task(bucket, remote, first, tmp_path / "another", 1e9).make(1, None) == "finished"
+    assert batch_job(bucket, remote, first, tmp_path / "another", 1e9).make(1, None) == "finished"
     assert_same_table(table_of(bucket), table_of(store.location))
     assert_kept_whole(far, remote)
 

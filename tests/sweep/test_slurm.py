@@ -18,7 +18,7 @@ from sweep_case import assert_same_table, planned, sweep_file, table_of, under_w
 from typer.testing import CliRunner
 
 from hedon.cli.main import app
-from hedon.sweep.work import RUNS, WORK, make_task
+from hedon.ensemble.batch import RUNS, WORK, batch_job
 
 NEEDED = ("munged", "slurmctld", "slurmd", "sbatch", "sinfo", "squeue")
 WHERE = os.environ["PATH"] + ":/usr/sbin:/sbin"
@@ -118,7 +118,7 @@ def whole(tmp_path_factory) -> pl.DataFrame:
     folder = tmp_path_factory.mktemp("alone")
     plan, store = planned(file_of(folder), str(folder / "whole"))
     for batch in plan.batches():
-        make_task(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
+        batch_job(store.location, plan, batch, folder / batch.name, 1e9).make(1, None)
     return table_of(store.location)
 
 

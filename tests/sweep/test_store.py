@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import pytest
 from sweep_case import assert_goes_on_elsewhere, assert_two_make_one, planned, sweep_file
 
+from hedon.ensemble.batch import STATE, batch_job
+from hedon.ensemble.store import PASSING, TRIES, Store
 from hedon.error import HedonError
-from hedon.jobs.store import PASSING, TRIES, Store
-from hedon.sweep.work import STATE, make_task
 
 
 @pytest.fixture(params=["folder", "file", "memory"])
@@ -65,7 +65,7 @@ def test_what_does_not_arrive_whole_is_read_again(fault, breaks, tries, tmp_path
         return cat_file(path)
 
     monkeypatch.setattr(store._system, "cat_file", cut_off)
-    monkeypatch.setattr("hedon.jobs.store.PAUSE", 0.0)
+    monkeypatch.setattr("hedon.ensemble.store.PAUSE", 0.0)
     payload, checksum = (DriverError if fault == each else ZeroDivisionError for each in ("cut off", "of two"))
     monkeypatch.setitem(sys.modules, "aiohttp", SimpleNamespace(ClientPayloadError=payload))
     monkeypatch.setitem(sys.modules, "botocore.exceptions", SimpleNamespace(FlexibleChecksumError=checksum))
@@ -106,7 +106,7 @@ def test_a_state_that_is_damaged_is_as_none(tmp_path):
     plan, store = planned(sweep_file(tmp_path, 128, seeds=1), url)
     (batch, *_) = plan.batches()
     store.write(f"{STATE}/{batch.name}.zip", b"PK but no archive")
-    assert make_task(url, plan, batch, tmp_path / "run", 1e9).make(1, None) == "finished"
+    assert batch_job(url, plan, batch, tmp_path / "run", 1e9).make(1, None) == "finished"
     assert store.names(STATE) == []
 
 

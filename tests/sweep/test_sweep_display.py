@@ -8,16 +8,16 @@ from rich.console import Console
 from sweep_case import planned, sweep_file
 
 from hedon.cli.display.job import JobDisplay
+from hedon.ensemble.batch import batch_job
+from hedon.ensemble.job import Outcome
 from hedon.experiment.plan import Moment
-from hedon.jobs.work import Outcome
-from hedon.sweep.work import make_task
 
 
 @pytest.mark.parametrize("terminal", [False, True])
 def test_progress_and_speed_are_shown_with_moments_and_without(tmp_path, terminal):
     """A batch of another process tells its moments; one of a cluster only its end."""
     plan, store = planned(sweep_file(tmp_path, 1000), str(tmp_path / "place"))
-    jobs = [make_task(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
+    jobs = [batch_job(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
     told, untold = jobs
     moment = Moment(200, 600, 1000, 1.0, ({"alive": 7}, {"alive": 5}), (None, None), 64)
     stream = io.StringIO()
@@ -35,7 +35,7 @@ def test_progress_and_speed_are_shown_with_moments_and_without(tmp_path, termina
 
 def test_a_world_has_died_out_where_no_species_is_left(tmp_path):
     plan, store = planned(sweep_file(tmp_path, 1000), str(tmp_path / "place"))
-    job = make_task(store.location, plan, next(plan.batches()), tmp_path / "batch", 1.0)
+    job = batch_job(store.location, plan, next(plan.batches()), tmp_path / "batch", 1.0)
     rows = tuple({"alive": alive} for alive in (0, 5, 0, 0))  # two worlds of two species
     stream = io.StringIO()
     with JobDisplay(Console(file=stream, width=200), [job]) as display:
@@ -51,7 +51,7 @@ def test_the_start_of_the_workers_does_not_count_into_the_time_that_is_left(tmp_
     now = [100.0]
     monkeypatch.setattr("hedon.cli.display.job.time.monotonic", lambda: now[0])
     plan, store = planned(sweep_file(tmp_path, 1000), str(tmp_path / "place"))
-    jobs = [make_task(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
+    jobs = [batch_job(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
     stream = io.StringIO()
     with JobDisplay(Console(file=stream, width=200), jobs) as display:
         now[0] += 50  # they start
@@ -62,7 +62,7 @@ def test_the_start_of_the_workers_does_not_count_into_the_time_that_is_left(tmp_
 def test_many_that_tell_no_moments_have_a_speed_and_are_not_told_one_by_one(tmp_path):
     costs = f'[factor]\n"energy.basic_cost" = {[i / 1e4 for i in range(1, 31)]}\n'
     plan, store = planned(sweep_file(tmp_path, 1000, seeds=1, rest=costs), str(tmp_path / "place"))
-    jobs = [make_task(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
+    jobs = [batch_job(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
     stream = io.StringIO()
     with JobDisplay(Console(file=stream, width=200), jobs) as display:
         for job in jobs[:-1]:

@@ -7,7 +7,7 @@ import pytest
 from sweep_case import condition_configs
 
 from hedon.config import ConfigError
-from hedon.sweep.plan import SweepFile
+from hedon.ensemble.plan import SweepFile
 from hedon.sweep.read import read_sweep
 
 

@@ -10,11 +10,11 @@ import pytest
 from sweep_case import condition_configs, planned, sweep_file
 
 from hedon.config import ConfigError, digest
+from hedon.ensemble.collect import collect
+from hedon.ensemble.plan import load_plan
+from hedon.ensemble.store import READERS, Store
 from hedon.experiment.plan import RunPlan
-from hedon.jobs.store import READERS, Store
-from hedon.sweep.collect import collect
 from hedon.sweep.condition import DIGITS, Loader
-from hedon.sweep.plan import load_plan
 from hedon.sweep.read import read_sweep
 
 COUNT = 2_000

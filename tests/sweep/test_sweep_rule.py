@@ -6,10 +6,10 @@ import pytest
 from sweep_case import assert_same_table, planned, sweep_file, table_of
 
 from hedon.config.problem import ConfigError
-from hedon.sweep.error import SweepError
-from hedon.sweep.plan import load_config_of, load_rules
+from hedon.ensemble.batch import batch_job
+from hedon.ensemble.error import EnsembleError
+from hedon.ensemble.plan import load_config_of, load_rules
 from hedon.sweep.read import read_sweep
-from hedon.sweep.work import make_task
 
 pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
 
@@ -43,13 +43,13 @@ def test_a_sweep_keeps_the_rules_that_its_file_names(tmp_path, monkeypatch):
         if name == "second":  # the plan needs the files no more
             shutil.rmtree(home)
         for batch in plan.batches():
-            task = make_task(store.location, plan, batch, tmp_path / name / "work" / batch.name, 1e9)
+            task = batch_job(store.location, plan, batch, tmp_path / name / "work" / batch.name, 1e9)
             assert task.make(1, None) == "finished"
         tables.append(table_of(store.location))
     assert_same_table(*tables)
     assert tables[0]["digest"].n_unique() == 4  # two rules, two seeds
     shutil.rmtree(tmp_path / "second" / "rules")
-    with pytest.raises(SweepError, match=r"has no text of the rule my\.py:once@"):
+    with pytest.raises(EnsembleError, match=r"has no text of the rule my\.py:once@"):
         load_rules(store, first)
 
 

@@ -17,14 +17,14 @@ from typer.testing import CliRunner
 from hedon import RunPlan, load_config, run
 from hedon.cli.cluster import ClusterError
 from hedon.cli.main import app
+from hedon.ensemble.batch import RESULTS, WORK, batch_job
+from hedon.ensemble.batches import open_batches
+from hedon.ensemble.demand import parse_part
+from hedon.ensemble.plan import load_plan
+from hedon.ensemble.status import sweep_status
+from hedon.ensemble.store import Store
 from hedon.error import HedonError
-from hedon.jobs.part import parse_part
-from hedon.jobs.store import Store
-from hedon.sweep.plan import load_plan
 from hedon.sweep.read import read_sweep
-from hedon.sweep.run import open_batches
-from hedon.sweep.status import sweep_status
-from hedon.sweep.work import RESULTS, WORK, make_task
 
 START = "from hedon.cli.start import main; main()"
 STEPS = 6_400
@@ -36,7 +36,7 @@ def make_all(location: str, file: Path) -> pl.DataFrame:
     plan, store = planned(file, location)
     assert store.folder is not None
     for batch in plan.batches():
-        assert make_task(location, plan, batch, store.folder / WORK / batch.name, 1e9).make(1, None) == "finished"
+        assert batch_job(location, plan, batch, store.folder / WORK / batch.name, 1e9).make(1, None) == "finished"
     return table_of(location)
 
 
@@ -118,7 +118,7 @@ def test_a_batch_that_fails_harms_no_other_and_is_tried_again(tmp_path):
     assert outcomes[bad.name].status == "failed"
     assert config.name in outcomes[bad.name].fault
     config.write_text(whole.replace("basic_cost = ", "basic_cost = 1"))
-    assert "is not the config that was planned" in run_sweep(plan, store, 1e9, 1)[bad.name].fault
+    assert "is not the planned config" in run_sweep(plan, store, 1e9, 1)[bad.name].fault
     config.write_text(whole)
     assert {name: o.status for name, o in run_sweep(plan, store, 1e9, 1).items()} == {bad.name: "finished"}
 
@@ -185,7 +185,7 @@ def test_a_task_is_as_small_in_a_large_sweep(tmp_path):
         (tmp_path / name).mkdir()
         plan = read_sweep(sweep_file(tmp_path / name, rest=rest)).plan
         batch = next(each for each in plan.batches() if each.condition == 1)
-        sizes.append(len(pickle.dumps(make_task("place", plan, batch, tmp_path, 1.0))))
+        sizes.append(len(pickle.dumps(batch_job("place", plan, batch, tmp_path, 1.0))))
     assert max(sizes) < min(sizes) + 20
 
 

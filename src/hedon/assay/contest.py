@@ -185,9 +185,9 @@ def sample_lines(sample: Sample, groups: tuple[str, str], species: str) -> list[
     Raises:
         AssayError: There is no table of founders, or its groups cannot be told apart.
     """
-    founders = sample.need.founders
+    founders = sample.demand.founders
     if founders is None:
-        raise AssayError(f"{sample.need.name}: has no table of founders, so it is not a contest")
+        raise AssayError(f"{sample.demand.name}: has no table of founders, so it is not a contest")
     return [_lines(world, founders, groups, sample.steps) for world in sample.of_species(species)]
 
 

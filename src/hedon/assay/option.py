@@ -9,8 +9,8 @@ from hedon.config.config import Config
 from hedon.config.dump import digest
 from hedon.config.layout import choose_species
 from hedon.config.schema.evolution import GenomeConfig
+from hedon.ensemble.demand import Demand
 from hedon.experiment.plan import RunPlan
-from hedon.jobs.requirement import RunRequirement
 from hedon.record.folder import CONFIG
 from hedon.record.founder import Founders, column_of, join, unknown_gene
 from hedon.record.founder_source import read_source, source_label
@@ -58,7 +58,7 @@ def parse_spread(text: str, sd: float | None, genome: GenomeConfig) -> Spread:
 
 def assay_worlds(
     config: Config, seeds: Sequence[int], steps: int, founders: Founders | None, part: str = "run"
-) -> RunRequirement:
+) -> Demand:
     """Worlds that an assay needs, checked.
 
     Args:
@@ -70,10 +70,10 @@ def assay_worlds(
     """
     plan = RunPlan(config, seeds, steps, part, founders=founders)
     each = dict.fromkeys(plan.seeds, plan.steps)
-    return RunRequirement(plan.config, digest(plan.config), each, founders=founders, rules=plan.rules, name=part)
+    return Demand(plan.config, digest(plan.config), each, founders=founders, rules=plan.rules, name=part)
 
 
-def assay_folder(kind: str, first: RunRequirement) -> Path:
+def assay_folder(kind: str, first: Demand) -> Path:
     """The folder of an assay: more seeds and more steps of the same setting find what is there."""
     return Path("assays") / f"{kind}-{first.config.name}-{first.config.fidelity}-{first.digest[:8]}"
 

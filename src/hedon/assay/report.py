@@ -22,7 +22,7 @@ def assay_answer(
     files: Mapping[str, str] | None = None,
 ) -> Answer:
     """What an assay found, with its worlds."""
-    config = samples[0].need.config
+    config = samples[0].demand.config
     head = {
         "assay": kind,
         "condition": config.name,

@@ -89,7 +89,7 @@ def measure_stability(sample: Sample) -> Stability:
     step = np.arange(TIMES + 1) * steps / TIMES
     weights = {name: weight_course(name, worlds[0].gene(name).law.initial_mean, step, courses) for name in names}
     return Stability(
-        name=sample.need.name,
+        name=sample.demand.name,
         point={name: worlds[0].gene(name).law.initial_mean for name in worlds[0].reward_names},
         worlds=len(worlds),
         extinct=sum(world.extinct_step is not None for world in worlds),

@@ -10,16 +10,15 @@ import typer
 
 from hedon.cli.cluster import ClusterOptions, own_words
 from hedon.cli.console import make_console
-from hedon.cli.make import make_runs, require_finished, tell_left_out
+from hedon.cli.make import make_worlds, require_finished
 from hedon.cli.run import Checkpoint, Threads
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS
-from hedon.text import count
 
 if TYPE_CHECKING:
     from hedon.assay.sample import Sample
     from hedon.config.config import Config
-    from hedon.jobs.requirement import RunRequirement
+    from hedon.ensemble.demand import Demand
     from hedon.record.founder import Founders
     from hedon.report.answer import Answer
 
@@ -58,56 +57,41 @@ class AssayOptions(ClusterOptions, _Worlds):
 
         return load_config(source, self.fidelity, self.overrides or ())
 
-    def worlds(self, config: "Config", founders: "Founders | None", part: str = "run") -> "RunRequirement":
+    def worlds(self, config: "Config", founders: "Founders | None", part: str = "run") -> "Demand":
         """Worlds that the assay needs."""
         from hedon.assay.option import assay_worlds
 
         return assay_worlds(config, parse_seeds(self.seeds, "--seeds"), self.steps, founders, part)
 
-    def answer(
-        self, kind: str, wanted: "Sequence[RunRequirement]", ask: "Callable[[Sequence[Sample]], Answer]"
-    ) -> None:
+    def answer(self, kind: str, demands: "Sequence[Demand]", ask: "Callable[[Sequence[Sample]], Answer]") -> None:
         """Makes the worlds of an assay, or reads them, and prints and writes what they tell.
 
         Raises:
             RecordError: A folder holds a run with other settings or founders.
-            JobError: A run failed.
+            EnsembleError: A run failed.
         """
         from hedon.assay.option import assay_folder
         from hedon.assay.sample import read_samples
         from hedon.cli.display.analysis import analysis_group
-        from hedon.jobs.part import parse_part
-        from hedon.jobs.plan import plan_jobs
-        from hedon.jobs.requirement import find_runs, part_of
+        from hedon.ensemble.demand import parse_part, part_of, worlds_of
         from hedon.report.answer import write_answer
 
-        console, folder = make_console(), self.out or assay_folder(kind, wanted[0])
+        console, folder = make_console(), self.out or assay_folder(kind, demands[0])
         if self.ray is not None or self.slurm:
             folder = folder.absolute()  # other machines have another current folder
         if self.slurm:
             words = [*own_words("--jobs", "--hours", "--out"), "--out", str(folder)]
-            worlds = sum(len(need.steps) for need in wanted)
-            path = self.write_script(Path(f"{folder.name}.sh"), kind, words, worlds, self.threads or 1)
+            path = self.write_script(Path(f"{folder.name}.sh"), kind, words, worlds_of(demands), self.threads or 1)
             console.print(f"wrote {path}. Next: sbatch {shlex.quote(str(path))}", soft_wrap=True)
             return
-        asked = part_of(wanted, parse_part(self.part))
-        found, faults = find_runs(folder, asked)
-        tell_left_out(faults)
-        jobs = plan_jobs(asked, found, folder, self.checkpoint)
-        if jobs:
-            config = wanted[0].config
-            worlds, runs = count(sum(len(need.steps) for need in asked), "world"), count(len(jobs), "run")
-            steps = sum(job.world_steps for job in jobs)
-            console.print(
-                f"hedon: {kind}, {config.name} ({config.fidelity}), {worlds} of {self.steps:,} steps: {runs} to make, "
-                f"{steps:,} world-steps",
-                soft_wrap=True,
-            )
-        require_finished(jobs, make_runs(jobs, console, self.threads, self.ray), console)
+        config, asked = demands[0].config, part_of(demands, parse_part(self.part))
+        what = f"{kind}, {config.name} ({config.fidelity})"
+        made = make_worlds(asked, folder, what, console, self.threads, self.ray, self.checkpoint)
+        require_finished(*made, console)
         if self.part is not None:
             console.print("This part is done. When all are, the same command without --part answers.", soft_wrap=True)
             return
-        answer = ask(read_samples(wanted, folder))
+        answer = ask(read_samples(demands, folder))
         files = write_answer(folder, answer)
         console.print(analysis_group({table.name: table for table in answer.tables}))
         console.print(f"wrote {', '.join(map(str, files))}", soft_wrap=True)

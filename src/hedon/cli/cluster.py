@@ -39,7 +39,7 @@ class ClusterOptions:
             ClusterError: There is nothing to run, or --ray or --part is given too.
             RecordError: The script cannot be written.
         """
-        from hedon.jobs.slurm import slurm_script
+        from hedon.ensemble.slurm import slurm_script
         from hedon.record.atomic import write_atomically
 
         if self.ray is not None or self.part is not None:

@@ -1,17 +1,79 @@
 """Makes the runs that a command needs, and shows how they go on and end."""
 
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
+from hedon.record.folder import CHECKPOINT_SECONDS
 from hedon.text import count, printable
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hedon.jobs.work import Job
+    from hedon.ensemble.demand import Demand
+    from hedon.ensemble.job import Job
+
+
+def make_worlds(
+    demands: "Sequence[Demand]",
+    folder: Path,
+    what: str,
+    console: "Console",
+    threads: int = 0,
+    ray: str | None = None,
+    checkpoint_seconds: float = CHECKPOINT_SECONDS,
+) -> "tuple[Sequence[Job], dict[Path, str]]":
+    """Makes the worlds that a folder lacks, and says how many there are.
+
+    Args:
+        demands: Which worlds.
+        folder: Of the runs: existing ones are used, missing ones are added.
+        what: What needs them.
+        console: To print to.
+        threads: Of this machine, or of each node; 0 for all.
+        ray: The address of a cluster.
+        checkpoint_seconds: Time between two checkpoints [s].
+
+    Returns:
+        The jobs that were needed, and the status of each that ended, by its folder.
+
+    Raises:
+        EnsembleError: The folder cannot be written, or there is no such cluster.
+        RecordError: A folder holds a run with other settings.
+    """
+    from hedon.ensemble.ensemble import find_ensemble
+    from hedon.ensemble.run_job import run_jobs
+
+    ensemble = find_ensemble(demands, folder)
+    jobs = run_jobs(ensemble, checkpoint_seconds)
+    console.print(
+        f"hedon: {what}, {count(ensemble.size, 'world')}: {count(len(jobs), 'run')} to make in {folder}, "
+        f"{sum(job.world_steps for job in jobs):,} world-steps",
+        soft_wrap=True,
+    )
+    if jobs:
+        tell_left_out(ensemble.faults)
+        require_folder(folder)
+    return jobs, make_runs(jobs, console, threads, ray)
+
+
+def require_folder(folder: Path) -> None:
+    """Makes a folder that will be written to, so that a problem with it shows before anything is run.
+
+    Raises:
+        EnsembleError: It cannot be made or written.
+    """
+    from hedon.ensemble.error import EnsembleError
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise EnsembleError(f"cannot write {folder}: {error.strerror}") from None
+    if not os.access(folder, os.W_OK):
+        raise EnsembleError(f"cannot write {folder}: no permission")
 
 
 def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: str | None = None) -> dict[Path, str]:
@@ -21,10 +83,10 @@ def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: 
         The status of each that ended, by its folder.
 
     Raises:
-        JobError: There is no such cluster.
+        EnsembleError: There is no such cluster.
     """
     from hedon.cli.display.job import MOST_TOLD, JobDisplay
-    from hedon.jobs.make import make_jobs
+    from hedon.ensemble.make import make_jobs
 
     for job in jobs if len(jobs) <= MOST_TOLD else ():
         verb, worlds = "continue" if job.newest() else "begin", count(len(job.seeds), "world")
@@ -47,11 +109,11 @@ def require_finished(
     """Ends the command, and says why, unless all runs are finished.
 
     Raises:
-        JobError: A run failed.
+        EnsembleError: A run failed.
         typer.Exit: Some were interrupted.
     """
+    from hedon.ensemble.error import EnsembleError
     from hedon.experiment.interrupt import interrupted_code
-    from hedon.jobs.error import JobError
 
     failed = [str(job.folder) for job in jobs if ends.get(job.folder) == "failed"]
     left = [job for job in jobs if ends.get(job.folder) not in ("finished", "failed")]
@@ -63,6 +125,6 @@ def require_finished(
         )
     if failed:
         shown = ", ".join(failed[:5])
-        raise JobError(f"{len(failed)} of {len(jobs)} runs failed (see the reasons above): {shown}. {again}")
+        raise EnsembleError(f"{len(failed)} of {len(jobs)} runs failed (see the reasons above): {shown}. {again}")
     if left:
         raise typer.Exit(interrupted_code())

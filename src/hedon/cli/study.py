@@ -1,6 +1,5 @@
 """`hedon study`: questions, the worlds that answer them, and pages of what came out."""
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -8,7 +7,7 @@ import typer
 
 from hedon.cli.cluster import ClusterOptions
 from hedon.cli.console import make_console
-from hedon.cli.make import make_runs, require_finished, tell_left_out
+from hedon.cli.make import make_worlds, require_finished, require_folder, tell_left_out
 from hedon.cli.option import with_options
 from hedon.cli.run import Threads
 from hedon.error import HedonError
@@ -153,7 +152,7 @@ def report(
     """
     studies, request = _request(names, seeds, steps, fidelity)
     folder = out or _folder(studies)
-    _require_folders(folder)
+    require_folder(folder)
     _report(studies, request, runs, folder, make_console())
 
 
@@ -187,6 +186,7 @@ def _script(
     options: ClusterOptions,
 ) -> None:
     """Writes the script of a job array. The folder of the runs must be one that all nodes share."""
+    from hedon.ensemble.demand import worlds_of
     from hedon.study.request import needs
 
     name = studies[0].name if len(studies) == 1 else "studies"
@@ -194,8 +194,7 @@ def _script(
     asked |= {} if request.seeds is None else {"--seeds": ",".join(map(str, request.seeds))}
     asked |= {} if request.steps is None else {"--steps": str(request.steps)}
     words = ["study", "run", *names, *(word for pair in asked.items() for word in pair)]
-    worlds = sum(len(need.steps) for need in needs(request))
-    path = options.write_script(Path(f"{name}.sh"), name, words, worlds, threads)
+    path = options.write_script(Path(f"{name}.sh"), name, words, worlds_of(needs(request)), threads)
     make_console().print(f"wrote {path}. Next: sbatch {path}", soft_wrap=True)
 
 
@@ -213,28 +212,18 @@ def _make(
     part: str | None,
     console: "Console",
 ) -> None:
-    from hedon.jobs.part import parse_part
-    from hedon.jobs.plan import plan_jobs
-    from hedon.jobs.requirement import find_runs, part_of
+    from hedon.ensemble.demand import parse_part, part_of
     from hedon.study.request import needs
 
     runs = runs if ray is None else runs.absolute()  # other nodes have another current folder
-    wanted = part_of(needs(request), parse_part(part))
-    found, faults = find_runs(runs, wanted)
-    jobs = plan_jobs(wanted, found, runs)
-    if jobs:
-        tell_left_out(faults)
-    demanded = sum(len(need.steps) for need in wanted)
-    console.print(
-        f"hedon: {count(len(request.items), 'item')} ({request.fidelity}) from {count(demanded, 'world')}: "
-        f"{count(len(jobs), 'run')} to make in {runs}, {sum(job.world_steps for job in jobs):,} world-steps",
-        soft_wrap=True,
-    )
-    _require_folders(*([out] if part is None else []), *([runs] if jobs else []))
-    ends = make_runs(jobs, console, threads, ray)
+    demands = part_of(needs(request), parse_part(part))
+    if part is None:
+        require_folder(out)
+    what = f"{count(len(request.items), 'item')} ({request.fidelity})"
+    made = make_worlds(demands, runs, what, console, threads, ray)
     if part is None:
         _report(studies, request, runs, out, console)
-    require_finished(jobs, ends, console)
+    require_finished(*made, console)
 
 
 def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Path, console: "Console") -> None:
@@ -247,18 +236,3 @@ def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Pat
     for one in made:
         console.print(f"{one.item.name}: {one.item.title}", soft_wrap=True)
     console.print(f"wrote {page}, with all figures and tables next to it", soft_wrap=True)
-
-
-def _require_folders(*folders: Path) -> None:
-    """Makes the folders that will be written to, so that a problem with them shows before the runs.
-
-    Raises:
-        RunsError: one cannot be made or written.
-    """
-    for folder in folders:
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise RunsError(f"cannot write {folder}: {error.strerror}") from None
-        if not os.access(folder, os.W_OK):
-            raise RunsError(f"cannot write {folder}: no permission")

@@ -17,8 +17,8 @@ from hedon.text import command_word, count, printable
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hedon.jobs.store import Store
-    from hedon.sweep.plan import SweepFile, SweepPlan
+    from hedon.ensemble.plan import SweepFile, SweepPlan
+    from hedon.ensemble.store import Store
 
 PRINTED = 40
 """Most settings that the end of a sweep prints."""
@@ -114,7 +114,7 @@ def status(place: Place) -> None:
       hedon sweep status sweeps/cost
     """
     from hedon.cli.display.run import duration
-    from hedon.sweep.status import sweep_status
+    from hedon.ensemble.status import sweep_status
 
     (made, store), console = _opened(place), make_console()
     _say_size(made, console)
@@ -138,8 +138,8 @@ def collect(place: Place) -> None:
     Example:
       hedon sweep collect sweeps/cost
     """
-    from hedon.sweep.collect import collect as write_table
-    from hedon.sweep.plan import TABLE
+    from hedon.ensemble.collect import collect as write_table
+    from hedon.ensemble.plan import TABLE
 
     made, store = _opened(place)
     table = write_table(made, store)
@@ -164,8 +164,8 @@ def report(
       hedon sweep report sweeps/cost --only alive_mean,w_action_mean
     """
     from hedon.compare.report import sweep_answer
+    from hedon.ensemble.collect import collect as write_table
     from hedon.report.answer import write_answer
-    from hedon.sweep.collect import collect as write_table
 
     made, store = _opened(place)
     names = [name.strip() for name in only.split(",")] if only else []
@@ -177,8 +177,8 @@ def report(
 
 def _written(file: Path, out: str | None, *, skip_invalid: bool) -> "tuple[SweepPlan, Store]":
     """The plan of a file, written where the sweep lives."""
-    from hedon.jobs.store import Store
-    from hedon.sweep.plan import write_plan
+    from hedon.ensemble.plan import write_plan
+    from hedon.ensemble.store import Store
     from hedon.sweep.read import read_sweep
 
     asked = read_sweep(file, skip_invalid=skip_invalid)
@@ -189,8 +189,8 @@ def _written(file: Path, out: str | None, *, skip_invalid: bool) -> "tuple[Sweep
 
 def _opened(place: str) -> "tuple[SweepPlan, Store]":
     """The plan of a sweep that lives somewhere."""
-    from hedon.jobs.store import Store
-    from hedon.sweep.plan import load_plan
+    from hedon.ensemble.plan import load_plan
+    from hedon.ensemble.store import Store
 
     store = Store(place)
     return load_plan(store), store
@@ -226,18 +226,18 @@ def _run_or_script(made: "SweepPlan", store: "Store", workers: int, checkpoint: 
 def _run_and_report(
     made: "SweepPlan", store: "Store", workers: int, ray: str | None, part: str | None, checkpoint: float
 ) -> None:
-    """Runs what is open, also what is added meanwhile, shows it, and prints the table. JobError: a batch failed."""
+    """Runs what is open, also what is added meanwhile, and prints the table. EnsembleError: a batch failed."""
     from hedon.cli.display.analysis import analysis_group
     from hedon.compare.report import settings_table
-    from hedon.jobs.part import parse_part
-    from hedon.sweep.collect import collect as write_table
-    from hedon.sweep.plan import load_plan
-    from hedon.sweep.run import open_tasks
+    from hedon.ensemble.batches import batch_jobs
+    from hedon.ensemble.collect import collect as write_table
+    from hedon.ensemble.demand import parse_part
+    from hedon.ensemble.plan import load_plan
 
     console, share, again = make_console(), parse_part(part), f"Go on with: hedon sweep resume {_quoted(store)}"
     _say_size(made, console)
     while True:
-        with open_tasks(made, store, checkpoint, share, on_cluster=ray is not None) as jobs:
+        with batch_jobs(made, store, checkpoint, share, on_cluster=ray is not None) as jobs:
             console.print(f"  {count(len(jobs), 'batch')} to make in {store.location}", soft_wrap=True)
             ends = make_runs(jobs, console, workers, ray) if jobs else {}
         require_finished(jobs, ends, console, again)

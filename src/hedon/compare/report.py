@@ -12,10 +12,10 @@ from hedon.analysis.result import ResultTable, make_table
 from hedon.compare.error import CompareError
 from hedon.compare.figure import draw_curves, draw_map
 from hedon.compare.response import points, responses
+from hedon.ensemble.plan import SweepPlan
 from hedon.report.answer import Answer
 from hedon.statistic.interval import Interval
 from hedon.statistic.minimum import FOR_INTERVAL
-from hedon.sweep.plan import SweepPlan
 from hedon.text import count
 
 MOST_CELLS = 400

@@ -9,9 +9,9 @@ import polars as pl
 
 from hedon.compare.error import CompareError
 from hedon.config.problem import nearest
+from hedon.ensemble.row import KEYS
 from hedon.measure.catalogue import column_measure
 from hedon.statistic.interval import ANY, Interval, mean_interval, share_interval
-from hedon.sweep.row import KEYS
 
 BINS = 8
 """Most groups of neighboring values for which means are shown, where every world has a value of its own."""

@@ -10,13 +10,13 @@ import polars as pl
 
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.compare.error import CompareError
-from hedon.jobs.store import Store
+from hedon.ensemble.collect import collect, table_value
+from hedon.ensemble.plan import PLAN, load_plan
+from hedon.ensemble.store import Store
 from hedon.measure.catalogue import world_row
 from hedon.record.folder import holds_run
 from hedon.record.reader import open_run
 from hedon.report.answer import FACTORS, WORLDS
-from hedon.sweep.collect import collect, table_value
-from hedon.sweep.plan import PLAN, load_plan
 
 SOURCE, CONDITION = "source", "condition"
 """Factors of worlds from two sources, and of runs with several configs."""
@@ -47,7 +47,7 @@ def read_table(source: str) -> WorldTable:
 
     Raises:
         CompareError: It is none of these, or holds no world.
-        RecordError, ConfigError, SweepError: It cannot be read.
+        RecordError, ConfigError, EnsembleError: It cannot be read.
     """
     runs = _run_folders(source)
     return _runs_table(source, _records(runs)) if runs else _other_table(source)
@@ -58,7 +58,7 @@ def read_both(sources: tuple[str, str]) -> WorldTable:
 
     Raises:
         CompareError: They are the same, one holds several conditions of runs, or their worlds differ in length.
-        RecordError, ConfigError, SweepError: One cannot be read.
+        RecordError, ConfigError, EnsembleError: One cannot be read.
     """
     if sources[0] == sources[1]:
         raise CompareError(f"{sources[0]} is named twice: name two sources, or --by FACTOR within one")

@@ -10,12 +10,12 @@ from typing import Any
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import WorldRecord, by_condition, read_worlds
 from hedon.error import ArgumentError
+from hedon.measure.summary import plain
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.report.earlier import earlier_names
 from hedon.report.moment import unfinished
-from hedon.report.summary import plain
 from hedon.report.topic import TOPICS, Tell, require_topics, run_topics, tell_nobody
 from hedon.report.words import answers
 from hedon.text import brief

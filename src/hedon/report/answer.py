@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable
 from hedon.figure.style import save_figure
+from hedon.measure.summary import plain
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.report.earlier import earlier_names
 from hedon.report.markdown import pipe_table
-from hedon.report.summary import plain
 from hedon.report.table import cells
 
 WORLDS, FACTORS = "world", "factors"

@@ -8,12 +8,12 @@ from collections.abc import Mapping
 from dataclasses import fields
 from inspect import cleandoc
 
+from hedon.measure.summary_key import CAUSE_KEYS, INTERVAL_KEYS, RUN_KEYS, SEVERAL_KEYS, WORLD_KEYS, WORLD_SEVERAL_KEYS
 from hedon.record.column import Table
 from hedon.record.manifest import ChannelNote, Manifest, Session
 from hedon.record.schema import FORMAT_VERSION, Columns, run_tables
 from hedon.record.snapshot import Snapshot
 from hedon.report.figure import FIGURES
-from hedon.report.summary_key import CAUSE_KEYS, INTERVAL_KEYS, RUN_KEYS, SEVERAL_KEYS, WORLD_KEYS, WORLD_SEVERAL_KEYS
 
 _HEAD = f"""\
 # What a run leaves behind

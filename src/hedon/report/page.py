@@ -19,11 +19,11 @@ from hedon.config.problem import format_value
 from hedon.demography.forecast import setting_warnings
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import svg_bytes
+from hedon.measure.summary import plain
 from hedon.record.atomic import write_atomically
 from hedon.record.reader import Run
 from hedon.report.analysis import Analysis
 from hedon.report.markdown import escape_markdown, pipe_table
-from hedon.report.summary import plain
 from hedon.report.table import cells, is_numeric
 from hedon.statistic.minimum import FOR_INTERVAL
 

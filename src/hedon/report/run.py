@@ -10,10 +10,12 @@ from collections.abc import Container, Iterator
 from dataclasses import replace
 from itertools import chain, count
 from pathlib import Path
+from typing import Any
 
 from hedon.config.color import food_colors
 from hedon.figure.named import NamedFigure
 from hedon.figure.world import draw_world, telling_agent
+from hedon.measure.summary import plain, summarize
 from hedon.record.atomic import write_atomically
 from hedon.record.error import RecordError
 from hedon.record.folder import FIGURES, SUMMARY
@@ -24,8 +26,8 @@ from hedon.report.analysis import ANALYSIS, Analysis, analyze, write_analysis
 from hedon.report.condition import condition_figures
 from hedon.report.figure import WORLD
 from hedon.report.page import FigureFile, report_pages, write_figure
-from hedon.report.summary import summarize
 from hedon.report.topic import TOPICS, Tell, tell_nobody
+from hedon.study.catalogue import reported_figures
 
 HTML, MARKDOWN = "report.html", "report.md"
 
@@ -72,8 +74,15 @@ def write_report(
     return [*summaries, *(folder / name for name in pages), answers, *(folder / figure.path for figure in drawn)]
 
 
+def run_summary(run: Run) -> dict[str, Any]:
+    """The content of `summary.json`: the numbers of a run, and what the sources of studies report of its preset."""
+    manifest = run.manifest
+    reported = reported_figures(manifest.preset) if manifest.modified is False else {}
+    return summarize(run) | {"reported": plain(reported)}
+
+
 def _write_summary(run: Run) -> Path:
-    text = json.dumps(summarize(run), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    text = json.dumps(run_summary(run), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
     write_atomically(run.path / SUMMARY, lambda file: file.write(text.encode()))
     return run.path / SUMMARY
 

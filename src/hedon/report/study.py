@@ -12,13 +12,13 @@ from hedon.analysis.topic.world import regime
 from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.figure.named import NamedFigure
 from hedon.measure.catalogue import world_row
+from hedon.measure.summary import plain
 from hedon.record.atomic import write_atomically
 from hedon.record.folder import FIGURES
 from hedon.record.lock import one_writer
 from hedon.report.answer import FACTORS, WORLDS
 from hedon.report.page import FigureFile, write_figure
 from hedon.report.study_page import HTML, BuiltItem, study_pages
-from hedon.report.summary import plain
 from hedon.study.gather import Gathered
 from hedon.study.item import Item, ItemInputs
 from hedon.study.study import Study

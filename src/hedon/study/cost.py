@@ -1,12 +1,10 @@
 """How long the items of a request take on this machine, and how much of that is still to run."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from hedon.jobs.plan import plan_jobs
-from hedon.jobs.requirement import find_runs
-from hedon.jobs.run import RunJob
+from hedon.ensemble.ensemble import Ensemble, find_ensemble
+from hedon.ensemble.run_job import run_jobs
 from hedon.record.provenance import usable_cpus
 from hedon.study.request import Request, needs
 from hedon.study.speed import Speed, measure_speed
@@ -45,9 +43,9 @@ def request_cost(request: Request, folder: Path, threads: int) -> RequestCost:
     threads = threads or usable_cpus()
     speeds: dict[int, Speed] = {}
 
-    def seconds(jobs: Sequence[RunJob]) -> float:
+    def seconds(ensemble: Ensemble) -> float:
         total = 0.0
-        for job in jobs:
+        for job in run_jobs(ensemble):
             kinds = len(job.plan.config.food)  # networks grow with the kinds of food
             if kinds not in speeds:
                 speeds[kinds] = measure_speed(job.plan.config, threads)
@@ -55,9 +53,8 @@ def request_cost(request: Request, folder: Path, threads: int) -> RequestCost:
         return total
 
     def cost(asked: Request) -> Cost:
-        wanted = needs(asked)
-        found, _ = find_runs(folder, wanted)
-        return Cost(seconds(plan_jobs(wanted, [], folder)), seconds(plan_jobs(wanted, found, folder)))
+        demands = needs(asked)
+        return Cost(seconds(Ensemble(demands, folder)), seconds(find_ensemble(demands, folder)))
 
     items = tuple(cost(replace(request, items=(item,))) for item in request.items)
     return RequestCost(items, cost(request), speeds)

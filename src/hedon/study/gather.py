@@ -9,7 +9,7 @@ import polars as pl
 from hedon.analysis.world.record import WorldRecord
 from hedon.config import digest
 from hedon.config.layout import choose_species
-from hedon.jobs.requirement import RunRequirement, find_runs, read_required
+from hedon.ensemble.ensemble import Ensemble, find_ensemble
 from hedon.record.error import RecordError
 from hedon.record.reader import Run
 from hedon.record.snapshot import Snapshot, load_snapshot
@@ -96,27 +96,23 @@ def gather(request: Request, folder: Path) -> Gathered:
         request: the items, with their scale.
         folder: that holds the runs.
     """
-    wanted = needs(request)
-    runs, faults = find_runs(folder, wanted)
-    damaged = {run.path.name: run.damaged_parts() for run in runs}
-    faults += [f"{part} is damaged: its rows are missing" for parts in damaged.values() for part in parts]
-    # Whole runs first, since of two worlds that are equally long the first is kept.
-    kept = read_required(wanted, sorted(runs, key=lambda run: bool(damaged[run.path.name])))
-    used = {world.run for world in kept.values()}
-    snapshots = _snapshots(request, runs, faults)
-    shown = tuple(run for run in runs if run.path.name in used)
-    return Gathered(request, shown, kept, _frames(wanted, shown), snapshots, tuple(faults))
+    ensemble = find_ensemble(needs(request), folder)
+    faults = list(ensemble.faults)
+    faults += [f"{part} is damaged: its rows are missing" for parts in ensemble.damaged.values() for part in parts]
+    snapshots = _snapshots(request, ensemble.runs, faults)
+    shown = ensemble.runs_of(ensemble.worlds.values())
+    return Gathered(request, shown, ensemble.worlds, _frames(ensemble, shown), snapshots, tuple(faults))
 
 
-def _frames(wanted: Iterable[RunRequirement], runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
+def _frames(ensemble: Ensemble, runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
     """The positions of each world that an item needs, from the run that goes furthest."""
-    needed = {need.digest: need for need in wanted}
+    demands = {demand.digest: demand for demand in ensemble.demands}
     found: dict[tuple[str, int], pl.LazyFrame] = {}
     for run in sorted(runs, key=lambda run: max([*run.manifest.steps_done, 0])):
-        need = needed[run.manifest.config_digest or ""]
-        if need.frames and need.has_frames(run):
+        demand = demands[run.manifest.config_digest or ""]
+        if demand.frames and demand.has_frames(run):
             for index, seed in enumerate(run.manifest.seeds):
-                found[need.digest, seed] = run.frames().filter(pl.col("world") == index)
+                found[demand.digest, seed] = run.frames().filter(pl.col("world") == index)
     return found
 
 

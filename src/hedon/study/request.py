@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from hedon.config import digest
-from hedon.jobs.requirement import RunRequirement
+from hedon.ensemble.demand import Demand
 from hedon.study.item import Item, Scale
 
 
@@ -31,13 +31,13 @@ class Request:
         return Scale(self.seeds or item.scale.seeds, self.steps or item.scale.steps)
 
 
-def needs(request: Request) -> list[RunRequirement]:
+def needs(request: Request) -> list[Demand]:
     """The worlds that a request needs, by setting; of each seed as many steps as the most demanding item asks for."""
-    found: dict[str, RunRequirement] = {}
+    found: dict[str, Demand] = {}
     for item, condition in ((each, condition) for each in request.items for condition in each.conditions):
         config = condition.config(request.fidelity)
         key = digest(config)
-        need = found.setdefault(key, RunRequirement(config, key, founders=condition.table(request.fidelity)))
+        need = found.setdefault(key, Demand(config, key, founders=condition.table(request.fidelity)))
         scale = request.scale(item)
         need.frames = math.gcd(need.frames, item.frames)  # 0 where neither needs them
         for seed in scale.seeds:

@@ -20,54 +20,14 @@ from hedon.config.rule_path import absolute_rule
 from hedon.config.schema.settings import PROVENANCE
 from hedon.config.schema.species import PER_SPECIES
 from hedon.config.validate import rebuild
+from hedon.ensemble.condition import DIGITS, Base, Settings, SweepCondition, changes
 from hedon.error import HedonError
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.rule import rules_beside
-from hedon.record.manifest import RuleSource
-from hedon.sweep.design import Settings
 from hedon.sweep.factor import FIDELITY, PRESET
 
 SHAPING = (PRESET, FIDELITY, "rule", "policy", "founders", "networks")
 """Last words of factors that are more than values: a run needs more than the config for them, or refuses them."""
-DIGITS = 16
-"""Of a digest that names a config."""
-
-
-@dataclass(frozen=True)
-class Base:
-    """A config that conditions begin with.
-
-    Attributes:
-        digest: of the config, `DIGITS` of it.
-        config: itself.
-        rules: the texts of its rules.
-        places: the settings that each factor changes in it, by complete paths.
-    """
-
-    digest: str
-    config: Config
-    rules: tuple[RuleSource, ...]
-    places: Mapping[str, tuple[str, ...]]
-
-
-@dataclass(frozen=True, slots=True)
-class SweepCondition:
-    """A setting of a sweep.
-
-    Attributes:
-        digest: of its config, `DIGITS` of it.
-        base: that of its base.
-        settings: values of the factors, by name.
-    """
-
-    digest: str
-    base: str
-    settings: Settings
-
-
-def changes(places: Mapping[str, Sequence[str]], settings: Settings) -> dict[str, Any]:
-    """What a condition changes in its base, by complete paths."""
-    return {place: settings[name] for name, own in places.items() for place in own}
 
 
 @dataclass(frozen=True)

@@ -4,15 +4,12 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
+from hedon.ensemble.condition import Settings
 from hedon.sweep.factor import Factor
 
 LATIN, SOBOL = "latin", "sobol"
 DRAWS = (LATIN, SOBOL)
-
-Settings = dict[str, Any]
-"""A value for each factor, by its name."""
 
 
 @dataclass(frozen=True)

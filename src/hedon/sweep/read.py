@@ -7,12 +7,12 @@ from typing import Any
 from hedon.config.load import DEFAULT_PRESET, FIDELITIES
 from hedon.config.problem import ConfigError, Problem, format_value, nearest
 from hedon.config.toml import read_toml
+from hedon.ensemble.plan import SweepFile, SweepPlan, rounds_of
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_STEPS, MAX_WORLDS, different, integer, parse_seeds, seed_list
 from hedon.sweep.condition import Loader, make_conditions
 from hedon.sweep.design import DRAWS, Design, all_settings
 from hedon.sweep.factor import FIDELITY, PRESET, Factor, read_factor
-from hedon.sweep.plan import SweepFile, SweepPlan, rounds_of
 
 KEYS = ("base", "fidelity", "steps", "seeds", "worlds", "keep", "set", "factor", "design")
 DESIGN = ("draw", "points", "seed", "zip")

@@ -11,7 +11,7 @@ from hedon.analysis import read_worlds
 from hedon.analysis.topic.life import lifetime, reproductive_success
 from hedon.analysis.topic.selection import price_topic
 from hedon.check.difference import compare_runs
-from hedon.report.summary import summarize
+from hedon.measure.summary import summarize
 
 STEPS, MIDDLE = 1024, 512
 LIVELY = (

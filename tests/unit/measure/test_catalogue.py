@@ -12,13 +12,13 @@ from synthetic_run import write_run
 from hedon.analysis import WorldRecord, read_worlds
 from hedon.cli.display.summary import summary_table
 from hedon.compare.response import points, responses
+from hedon.ensemble.row import world_rows
 from hedon.measure.catalogue import MEASURES, column_measure, gene_mean
 from hedon.measure.measure import Measure
 from hedon.measure.response import at_common_age, measured
 from hedon.record.reader import open_run
-from hedon.report.summary import summarize
+from hedon.report.run import run_summary
 from hedon.statistic.interval import AMOUNT
-from hedon.sweep.row import world_rows
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def test_one_entry_is_seen_in_summary_table_comparison_and_claims(
 
     run = open_run(folder)
     expected = [crowd(world) for world in read_worlds([run])]
-    summary = summarize(run)
+    summary = run_summary(run)
     assert [world["crowd"] for world in summary["worlds"]] == expected
     assert summary["crowd"]["mean"] == pytest.approx(sum(expected) / 3)
 

@@ -7,10 +7,10 @@ import polars as pl
 import pytest
 from synthetic_run import write_run
 
+from hedon.measure.summary import summarize
 from hedon.record.reader import open_run
 from hedon.report.analysis import analyze
 from hedon.report.condition import condition_figures
-from hedon.report.summary import summarize
 
 
 @pytest.mark.parametrize("extinct", [0, None])

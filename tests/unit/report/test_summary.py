@@ -9,17 +9,18 @@ from rich.console import Console
 from synthetic_run import write_run
 
 from hedon.cli.display.summary import summary_table
+from hedon.measure.summary import plain
+from hedon.measure.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
 from hedon.record.reader import open_run
 from hedon.report.document import figure_table, records_page
-from hedon.report.summary import plain, summarize
-from hedon.report.summary_key import INTERVAL_KEYS, RUN_KEYS, WORLD_KEYS
+from hedon.report.run import run_summary
 from hedon.report.table import format_number
 
 ROOT = Path(__file__).parents[3]
 
 
 def test_every_key_is_documented_and_every_documented_key_is_there(tmp_path: Path) -> None:
-    summary = summarize(open_run(write_run(tmp_path / "run", intervals=10, worlds=2)))
+    summary = run_summary(open_run(write_run(tmp_path / "run", intervals=10, worlds=2)))
     assert set(summary) == set(RUN_KEYS)
     assert set(summary["mean_lifetime"]) == set(summary["weights"]["w_normal"]) == set(INTERVAL_KEYS)
     assert all(set(world) == set(WORLD_KEYS) for world in summary["worlds"])
@@ -28,7 +29,7 @@ def test_every_key_is_documented_and_every_documented_key_is_there(tmp_path: Pat
 
 def test_numbers_agree_with_the_tables(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=40, worlds=5, food_kinds=("normal", "poison")))
-    summary, agents = summarize(run), run.agents()
+    summary, agents = run_summary(run), run.agents()
     for index, world in enumerate(summary["worlds"]):
         mine = agents.filter(agents["world"] == index)
         dead = mine.filter(mine["death_step"].is_not_null())
@@ -51,7 +52,7 @@ def test_numbers_agree_with_the_tables(tmp_path: Path) -> None:
 
 
 def test_extinct_worlds_count_but_not_among_the_survivors(tmp_path: Path) -> None:
-    summary = summarize(open_run(write_run(tmp_path / "run", intervals=40, worlds=3, extinct=1)))
+    summary = run_summary(open_run(write_run(tmp_path / "run", intervals=40, worlds=3, extinct=1)))
     assert summary["extinct_worlds"] == 1
     world = summary["worlds"][1]
     assert world["extinct"] is True
@@ -64,7 +65,7 @@ def test_extinct_worlds_count_but_not_among_the_survivors(tmp_path: Path) -> Non
 
 def test_worlds_that_died_out_count_as_empty(tmp_path: Path) -> None:
     folder = write_run(tmp_path / "run", intervals=40, worlds=3, extinct=1)
-    summary = summarize(open_run(folder))
+    summary = run_summary(open_run(folder))
     rows = open_run(folder).population()
     ended = rows.filter((pl.col("world") == 1) & (pl.col("step") > 0.9 * 40 * 1024))
     assert summary["worlds"][1]["alive_mean"] == pytest.approx(ended["agent_steps"].sum() / (0.1 * 40 * 1024))
@@ -75,7 +76,7 @@ def test_worlds_that_died_out_count_as_empty(tmp_path: Path) -> None:
 
 def test_a_run_without_rows_has_a_summary(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=0, worlds=1, preset=None, name=None, neutral_count=0))
-    summary = summarize(run)
+    summary = run_summary(run)
     assert summary["reported"] == {}
     assert summary["worlds"][0]["alive"] == 50
     assert summary["worlds"][0]["mean_lifetime"] is None
@@ -86,14 +87,14 @@ def test_a_run_without_rows_has_a_summary(tmp_path: Path) -> None:
 def test_a_damaged_part_is_named_in_the_summary(tmp_path: Path) -> None:
     folder = write_run(tmp_path / "run", intervals=10, worlds=1)
     (folder / "agents/part-000000.parquet").write_bytes(b"torn")
-    summary = summarize(open_run(folder))
+    summary = run_summary(open_run(folder))
     assert summary["damaged_parts"] == ["agents/part-000000.parquet"]
     assert "agents/part-000000.parquet" in _print(summary)
 
 
 def test_table_shows_ours_beside_the_papers(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=40, worlds=3, extinct=1))
-    text = _print(summarize(run))
+    text = _print(run_summary(run))
     assert "lifetime of the dead [step]" in text
     assert "6,310" in text
     assert "1 of 3 worlds died out" in text
@@ -111,7 +112,7 @@ def test_table_shows_ours_beside_the_papers(tmp_path: Path) -> None:
     ids=["own file", "override", "unknown"],
 )
 def test_the_papers_figures_stand_beside_its_own_conditions_only(tmp_path: Path, options: dict, title: str) -> None:
-    summary = summarize(open_run(write_run(tmp_path / "run", intervals=5, worlds=1, **options)))
+    summary = run_summary(open_run(write_run(tmp_path / "run", intervals=5, worlds=1, **options)))
     assert summary["reported"] == {}
     text = _print(summary)
     assert title in text
@@ -121,7 +122,7 @@ def test_the_papers_figures_stand_beside_its_own_conditions_only(tmp_path: Path,
 def test_the_table_has_intervals_from_five_worlds_on(tmp_path: Path) -> None:
     lines = []
     for worlds in (4, 5):
-        summary = summarize(open_run(write_run(tmp_path / f"{worlds}", intervals=20, worlds=worlds)))
+        summary = run_summary(open_run(write_run(tmp_path / f"{worlds}", intervals=20, worlds=worlds)))
         assert (summary["alive_mean"]["low"] is None) == (worlds < 5)
         lines += [line for line in _print(summary).splitlines() if "agents alive" in line]
     assert "…" not in lines[0].replace("130 … 150", "")
@@ -154,7 +155,7 @@ def test_the_page_of_the_figures_has_their_captions() -> None:
 
 
 def test_a_narrow_terminal_has_every_number_whole(tmp_path: Path) -> None:
-    summary = summarize(open_run(write_run(tmp_path / "run", intervals=40, worlds=5)))
+    summary = run_summary(open_run(write_run(tmp_path / "run", intervals=40, worlds=5)))
     text = _print(summary, width=60)
     assert max(map(len, text.splitlines())) <= 60
     for world in summary["worlds"]:
@@ -164,7 +165,7 @@ def test_a_narrow_terminal_has_every_number_whole(tmp_path: Path) -> None:
 
 
 def test_one_world_has_no_column_of_intervals(tmp_path: Path) -> None:
-    assert "interval" not in _print(summarize(open_run(write_run(tmp_path / "run", intervals=5, worlds=1))))
+    assert "interval" not in _print(run_summary(open_run(write_run(tmp_path / "run", intervals=5, worlds=1))))
 
 
 def _print(summary: dict, width: int = 120) -> str:

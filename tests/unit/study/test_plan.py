@@ -8,12 +8,12 @@ import pytest
 from resumed_run import SMALL, small_run
 
 from hedon.config import diff, load_config
+from hedon.ensemble.demand import part_of, setting_name
+from hedon.ensemble.ensemble import find_ensemble
+from hedon.ensemble.run_job import RunJob, folder_name, run_jobs
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.resume import resume
 from hedon.experiment.run import run
-from hedon.jobs.plan import folder_name, plan_jobs
-from hedon.jobs.requirement import find_runs, part_of, setting_name
-from hedon.jobs.run import RunJob
 from hedon.record.folder import MANIFEST
 from hedon.record.manifest import load_manifest, save_manifest
 from hedon.study.catalogue import StudyError, choose
@@ -32,8 +32,7 @@ def an_item(
 
 
 def planned(request: Request, folder: Path) -> list[RunJob]:
-    wanted = needs(request)
-    return plan_jobs(wanted, find_runs(folder, wanted)[0], folder)
+    return run_jobs(find_ensemble(needs(request), folder))
 
 
 def test_items_share_the_worlds_of_equal_settings_and_the_most_demanding_decides() -> None:
@@ -117,10 +116,10 @@ def test_branches_and_other_settings_are_left_alone_and_damage_is_named(tmp_path
     (tmp_path / "damaged").mkdir()
     (tmp_path / "damaged" / "manifest.json").write_text("{")
     request = Request((an_item("a", BASE),), "corrected")
-    runs, faults = find_runs(tmp_path, needs(request))
-    assert runs == []
-    assert len(faults) == 1
-    assert "damaged" in faults[0]
+    ensemble = find_ensemble(needs(request), tmp_path)
+    assert ensemble.runs == []
+    assert len(ensemble.faults) == 1
+    assert "damaged" in ensemble.faults[0]
     assert len(planned(request, tmp_path)) == 1
 
 
@@ -132,7 +131,7 @@ def test_a_run_whose_config_lacks_a_setting_of_this_version_is_named(tmp_path: P
     manifest = load_manifest(tmp_path / "earlier")
     save_manifest(tmp_path / "earlier", replace(manifest, config_digest="0" * 64))
     request = Request((an_item("a", BASE),), "corrected")
-    for faults in (find_runs(tmp_path, needs(request))[1], gather(request, tmp_path).faults):
+    for faults in (find_ensemble(needs(request), tmp_path).faults, gather(request, tmp_path).faults):
         (fault,) = faults
         assert "earlier" in fault
         assert "learning.reward_scaling: is missing" in fault

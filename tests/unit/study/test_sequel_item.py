@@ -8,9 +8,9 @@ import pytest
 
 from hedon.analysis.result import ResultTable
 from hedon.analysis.world.population import death_rates
+from hedon.ensemble.ensemble import Ensemble, find_ensemble
+from hedon.ensemble.run_job import run_jobs
 from hedon.figure.named import NamedFigure
-from hedon.jobs.plan import plan_jobs
-from hedon.jobs.requirement import find_runs
 from hedon.study.catalogue import choose
 from hedon.study.gather import Gathered, gather
 from hedon.study.item import ItemInputs
@@ -26,7 +26,7 @@ def request_(tmp_path_factory: pytest.TempPathFactory) -> tuple[Request, Path]:
     """A request for worlds of predators and prey, and the folder where the run stands that has them."""
     folder = tmp_path_factory.mktemp("sequel")
     request = Request(choose(ITEMS)[0].items, "corrected", (3,), STEPS)
-    jobs = [job for job in plan_jobs(needs(request), [], folder) if job.plan.config.name == "predator"]
+    jobs = [job for job in run_jobs(Ensemble(needs(request), folder)) if job.plan.config.name == "predator"]
     assert [(job.plan.seeds, job.plan.steps, job.plan.frames) for job in jobs] == [((3,), STEPS, FRAMES)]
     jobs[0].make(1, None)
     return request, folder
@@ -56,14 +56,13 @@ def test_a_run_of_two_species_is_found_and_serves_each_of_them(gathered: Gathere
 
 def test_nothing_is_run_twice_but_what_lacks_positions(request_: tuple[Request, Path]) -> None:
     request, folder = request_
-    runs, _ = find_runs(folder, needs(request))
-    assert [job.plan.config.name for job in plan_jobs(needs(request), runs, folder)] == ["predator-square"]
-    (job,) = (job for job in plan_jobs(needs(request), [], folder) if job.plan.config.name == "predator")
+    assert [job.plan.config.name for job in run_jobs(find_ensemble(needs(request), folder))] == ["predator-square"]
+    (job,) = (job for job in run_jobs(Ensemble(needs(request), folder)) if job.plan.config.name == "predator")
     finer = next(need for need in needs(request) if need.config == job.plan.config)
     finer.frames = FRAMES // 2
-    assert [job.plan.frames for job in plan_jobs([finer], runs, folder)] == [FRAMES // 2]
+    assert [job.plan.frames for job in run_jobs(find_ensemble([finer], folder))] == [FRAMES // 2]
     finer.frames = 0
-    assert plan_jobs([finer], runs, folder) == []
+    assert run_jobs(find_ensemble([finer], folder)) == []
 
 
 def test_each_species_has_its_own_history(gathered: Gathered) -> None:

@@ -12,8 +12,8 @@ from rich.text import Text
 from hedon.cli.display.run import duration
 from hedon.cli.display.screen import Screen
 from hedon.cli.display.table import PrintedTable
+from hedon.ensemble.job import Job, Outcome
 from hedon.experiment.plan import Moment
-from hedon.jobs.work import Job, Outcome
 from hedon.text import printable
 
 SPAN = 60.0

@@ -13,7 +13,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from hedon.jobs.error import JobError
+from hedon.ensemble.error import EnsembleError
 from hedon.record.atomic import write_atomically
 
 READERS = 32
@@ -43,7 +43,7 @@ class Store:
         folder: On this machine, or shared by all that take part; None for a URL.
 
     Raises:
-        JobError: A URL whose kind needs a package that is not installed, or that is unknown.
+        EnsembleError: A URL whose kind needs a package that is not installed, or that is unknown.
     """
 
     def __init__(self, location: str) -> None:
@@ -61,9 +61,9 @@ class Store:
                 )
             )
         except ImportError as error:
-            raise JobError(f'{location}: {error}: pip install "hedon[remote]"') from error
+            raise EnsembleError(f'{location}: {error}: pip install "hedon[remote]"') from error
         except ValueError as error:
-            raise JobError(f"{location}: {error}") from error
+            raise EnsembleError(f"{location}: {error}") from error
         # Listings must not come from a cache: other machines write here too.
         self._system.use_listings_cache = False
         self._made: set[str] = set()
@@ -72,7 +72,7 @@ class Store:
         """Writes a content, whole or not at all; the last one of several counts.
 
         Raises:
-            JobError: It cannot be written.
+            EnsembleError: It cannot be written.
         """
         path = self._path(name)
         parent, _, last = path.rpartition("/")
@@ -93,7 +93,7 @@ class Store:
                 raise
 
     def read(self, name: str) -> bytes | None:
-        """A content, or None where there is none of this name. JobError: it cannot be read."""
+        """A content, or None where there is none of this name. EnsembleError: it cannot be read."""
         with self._asked(f"cannot read {name} of"), suppress(FileNotFoundError, NotADirectoryError):
             for left in reversed(range(TRIES)):
                 try:
@@ -108,13 +108,13 @@ class Store:
         """Several contents, in their order, `READERS` at a time: each answer of a store takes a while.
 
         Raises:
-            JobError: One cannot be read.
+            EnsembleError: One cannot be read.
         """
         with ThreadPoolExecutor(READERS) as pool:
             return list(pool.map(self.read, names))
 
     def names(self, folder: str) -> list[str]:
-        """The plain names directly within a folder, sorted. JobError: they cannot be read."""
+        """The plain names directly within a folder, sorted. EnsembleError: they cannot be read."""
         self._system.invalidate_cache()
         found: list[str] = []
         with self._asked(f"cannot list {folder} of"), suppress(FileNotFoundError, NotADirectoryError):
@@ -123,7 +123,7 @@ class Store:
         return sorted({name for name in names if name and not name.startswith(".")})
 
     def remove(self, name: str) -> None:
-        """Removes a content, if it is there. JobError: it cannot be removed."""
+        """Removes a content, if it is there. EnsembleError: it cannot be removed."""
         with self._asked(f"cannot remove {name} of"), suppress(FileNotFoundError, NotADirectoryError):
             self._system.rm_file(self._path(name))
 
@@ -134,7 +134,7 @@ class Store:
             yield
         except Exception as error:
             why = error.strerror if self.folder is not None and isinstance(error, OSError) else None
-            raise JobError(f"{what} {self.location}: {why or f'{type(error).__name__}: {error}'}") from error
+            raise EnsembleError(f"{what} {self.location}: {why or f'{type(error).__name__}: {error}'}") from error
 
     def _path(self, name: str) -> str:
         return f"{self._root.rstrip('/')}/{name}"

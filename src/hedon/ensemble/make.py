@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from hedon.jobs.process import JobListener, make_here
-from hedon.jobs.work import Job, Outcome
+from hedon.ensemble.job import Job, Outcome
+from hedon.ensemble.process import JobListener, make_here
 from hedon.record.provenance import usable_cpus
 
 T = TypeVar("T", bound=Job)
@@ -20,10 +20,10 @@ def make_jobs(
         How each job ended, by its run's folder; jobs that never began are missing.
 
     Raises:
-        JobError: Ray is not installed, or no cluster is at the address.
+        EnsembleError: Ray is not installed, or no cluster is at the address.
     """
     if ray is None:
         return make_here(jobs, threads or usable_cpus(), display)
-    from hedon.jobs.cluster import make_on_ray
+    from hedon.ensemble.cluster import make_on_ray
 
     return make_on_ray(jobs, ray, display, threads)

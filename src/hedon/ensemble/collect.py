@@ -8,11 +8,11 @@ from typing import Any
 import polars as pl
 
 from hedon.config.problem import format_value
-from hedon.jobs.store import Store
-from hedon.sweep.error import SweepError
-from hedon.sweep.plan import TABLE, SweepPlan, read_name
-from hedon.sweep.row import KEYS
-from hedon.sweep.work import RESULTS
+from hedon.ensemble.batch import RESULTS
+from hedon.ensemble.error import EnsembleError
+from hedon.ensemble.plan import TABLE, SweepPlan, read_name
+from hedon.ensemble.row import KEYS
+from hedon.ensemble.store import Store
 
 _AT_ONCE = 1000
 """Results that are in memory as JSON at a time."""
@@ -22,7 +22,7 @@ def read_results(plan: SweepPlan, store: Store) -> Iterator[tuple[str, dict[str,
     """The results of all batches that have worlds of a plan, with the beginnings of their names.
 
     Raises:
-        SweepError: one cannot be read.
+        EnsembleError: one cannot be read.
     """
     keys, seeds = set(map(plan.key, plan.conditions)), set(plan.seeds)
     names = []
@@ -36,7 +36,7 @@ def read_results(plan: SweepPlan, store: Store) -> Iterator[tuple[str, dict[str,
             try:
                 yield read_name(name.rpartition("/")[2])[0], json.loads(content or b"")
             except ValueError as error:
-                raise SweepError(f"{store.location}/{name} is damaged: remove it, and resume") from error
+                raise EnsembleError(f"{store.location}/{name} is damaged: remove it, and resume") from error
 
 
 def _sweep_table(plan: SweepPlan, results: Iterable[tuple[str, dict[str, Any]]]) -> pl.DataFrame:
@@ -72,7 +72,7 @@ def collect(plan: SweepPlan, store: Store) -> pl.DataFrame:
     """Writes the table `table.parquet` of all worlds so far, and returns it.
 
     Raises:
-        SweepError: A result cannot be read, or the table cannot be written.
+        EnsembleError: A result cannot be read, or the table cannot be written.
     """
     table = _sweep_table(plan, read_results(plan, store))
     buffer = io.BytesIO()

@@ -1,4 +1,4 @@
-"""What came out of a run, in one dictionary: the content of `summary.json`.
+"""What came out of a run, in one dictionary: the numbers of `summary.json`.
 
 Numbers of agents are those of one species. Where a run has several, each has its own, under `species`, and what is
 summed over all of them is called a total.
@@ -20,7 +20,6 @@ from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.measure.catalogue import MEASURES
 from hedon.record.reader import Run
 from hedon.statistic.interval import AMOUNT, mean_interval
-from hedon.study.catalogue import reported_figures
 
 _COUNTS = ("births", "deaths", "births_failed_full", "births_failed_space")
 
@@ -41,11 +40,7 @@ def summarize(run: Run) -> dict[str, Any]:
         ConfigError: The run's config cannot be read.
     """
     run = run.load()
-    return summarize_worlds(run, read_worlds([run]))
-
-
-def summarize_worlds(run: Run, records: Sequence[WorldRecord]) -> dict[str, Any]:
-    """The summary of a run whose worlds are read already."""
+    records = read_worlds([run])
     species = {name: [each for each in records if each.species == name] for name in (r.species for r in records)}
     fares = {name: [_fare(world) for world in own] for name, own in species.items()}
     worlds = [_world(run, index, {name: own[index] for name, own in species.items()}, fares) for index in _indices(run)]
@@ -65,7 +60,6 @@ def summarize_worlds(run: Run, records: Sequence[WorldRecord]) -> dict[str, Any]
         "steps_asked": manifest.steps_asked,
         "steps": sum(world["steps"] for world in worlds),
         **(_several(records, worlds, means) if run.columns.several else next(iter(means.values()))),
-        "reported": reported_figures(manifest.preset) if manifest.modified is False else {},
         "damaged_parts": [str(path.relative_to(run.path)) for path in run.damaged_parts()],
         "worlds": worlds,
     }

@@ -17,19 +17,19 @@ from pathlib import Path
 from typing import Any
 
 from hedon.config.problem import format_value
+from hedon.ensemble.condition import SweepCondition
+from hedon.ensemble.error import EnsembleError
+from hedon.ensemble.plan import Batch, SweepPlan, load_config_of, load_rules
+from hedon.ensemble.row import world_rows
+from hedon.ensemble.store import Store
 from hedon.experiment.plan import Display, Moment, RunPlan
 from hedon.experiment.resume import make
-from hedon.jobs.error import JobError
-from hedon.jobs.store import Store
+from hedon.measure.summary import summarize
 from hedon.record.error import InUseError, RecordError
 from hedon.record.folder import LOCK, checkpoint_paths
 from hedon.record.lock import FolderLock
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
-from hedon.report.summary import summarize
-from hedon.sweep.condition import SweepCondition
-from hedon.sweep.plan import Batch, SweepPlan, load_config_of, load_rules
-from hedon.sweep.row import world_rows
 
 RESULTS, STATE, WORK, TABLES, RUNS = "results", "state", "work", "tables", "runs"
 _LOOK_SECONDS = 0.2
@@ -38,7 +38,7 @@ _ORPHAN_SECONDS = 120.0
 
 
 @dataclass(frozen=True)
-class Task:
+class BatchJob:
     """A batch to make: what a process needs to know of a sweep, however large the sweep is.
 
     Attributes:
@@ -81,7 +81,7 @@ class Task:
         store = Store(self.location)
         if store.folder is not None:
             return _newest(self.folder)
-        with suppress(JobError, zipfile.BadZipFile):
+        with suppress(EnsembleError, zipfile.BadZipFile):
             content = store.read(_state_name(self)) or b""
             with zipfile.ZipFile(io.BytesIO(content)) as state:
                 return max((path.name for path in map(Path, state.namelist()) if path.suffix == ".npz"), default="")
@@ -126,8 +126,8 @@ class Task:
         return "finished"
 
 
-def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkpoint_seconds: float) -> Task:
-    """What a process is given to make a batch of a plan; see `Task`.
+def batch_job(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkpoint_seconds: float) -> BatchJob:
+    """What a process is given to make a batch of a plan; see `BatchJob`.
 
     Args:
         location: Of the sweep's store, as a process in another folder finds it.
@@ -138,7 +138,7 @@ def make_task(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkp
     """
     condition = plan.conditions[batch.condition]
     changed = plan.changes(condition)
-    return Task(location, batch, condition, changed, plan.steps, plan.keep, folder, checkpoint_seconds)
+    return BatchJob(location, batch, condition, changed, plan.steps, plan.keep, folder, checkpoint_seconds)
 
 
 def _make(plan: RunPlan, display: Display | None) -> Manifest:
@@ -152,34 +152,34 @@ def _make(plan: RunPlan, display: Display | None) -> Manifest:
         return make(plan, display)
 
 
-def _keep(store: Store, task: Task, run: Run) -> None:
+def _keep(store: Store, job: BatchJob, run: Run) -> None:
     for table in ("agents", "population"):
-        if table in task.keep:
+        if table in job.keep:
             rows = run.agents().sort("world", "agent_id") if table == "agents" else run.population()
             buffer = io.BytesIO()
             rows.write_parquet(buffer)
-            store.write(f"{TABLES}/{table}/{task.batch.name}.parquet", buffer.getvalue())
-    if "run" in task.keep:
-        paths = sorted(path for path in task.folder.rglob("*") if path.is_file() and path.name != LOCK)
+            store.write(f"{TABLES}/{table}/{job.batch.name}.parquet", buffer.getvalue())
+    if "run" in job.keep:
+        paths = sorted(path for path in job.folder.rglob("*") if path.is_file() and path.name != LOCK)
         if store.folder is None:  # as one object: an earlier process may have cut its tables at other places
-            store.write(f"{RUNS}/{task.batch.name}.zip", _archive(task.folder, paths))
+            store.write(f"{RUNS}/{job.batch.name}.zip", _archive(job.folder, paths))
             return
-        shutil.rmtree(store.folder / RUNS / task.batch.name, ignore_errors=True)
+        shutil.rmtree(store.folder / RUNS / job.batch.name, ignore_errors=True)
         for path in paths:
-            store.write(f"{RUNS}/{task.batch.name}/{path.relative_to(task.folder)}", path.read_bytes())
+            store.write(f"{RUNS}/{job.batch.name}/{path.relative_to(job.folder)}", path.read_bytes())
 
 
 class _Carrying:
     """Sends the state of a run to the store when it has a new checkpoint, and passes moments on."""
 
-    def __init__(self, store: Store, task: Task, display: Display | None) -> None:
-        self._store, self._task, self._display = store, task, display
-        self._sent = _newest(task.folder)
+    def __init__(self, store: Store, job: BatchJob, display: Display | None) -> None:
+        self._store, self._job, self._display = store, job, display
+        self._sent = _newest(job.folder)
 
     def update(self, moment: Moment) -> None:
-        if (newest := _newest(self._task.folder)) != self._sent:
+        if (newest := _newest(self._job.folder)) != self._sent:
             self._sent = newest
-            _send_state(self._store, self._task)
+            _send_state(self._store, self._job)
         if self._display is not None:
             self._display.update(moment)
 
@@ -208,18 +208,18 @@ def _newest(folder: Path) -> str:
     return max((path.name for path in checkpoint_paths(folder)), default="")
 
 
-def _state_name(task: Task) -> str:
-    return f"{STATE}/{task.batch.name}.zip"
+def _state_name(job: BatchJob) -> str:
+    return f"{STATE}/{job.batch.name}.zip"
 
 
-def _send_state(store: Store, task: Task) -> None:
+def _send_state(store: Store, job: BatchJob) -> None:
     """Sends a run's folder. Checkpoints go first: what later files have more than they say, a resumed run removes."""
     if store.folder is not None:
         return
-    others = sorted(path for path in task.folder.rglob("*") if path.is_file() and not path.name.startswith("."))
-    first = checkpoint_paths(task.folder)[-1:]
-    state = _archive(task.folder, [*first, *(path for path in others if path.suffix != ".npz")])
-    store.write(_state_name(task), state)
+    others = sorted(path for path in job.folder.rglob("*") if path.is_file() and not path.name.startswith("."))
+    first = checkpoint_paths(job.folder)[-1:]
+    state = _archive(job.folder, [*first, *(path for path in others if path.suffix != ".npz")])
+    store.write(_state_name(job), state)
 
 
 def _archive(folder: Path, paths: Sequence[Path]) -> bytes:
@@ -231,13 +231,13 @@ def _archive(folder: Path, paths: Sequence[Path]) -> bytes:
     return buffer.getvalue()
 
 
-def _fetch_state(store: Store, task: Task) -> None:
+def _fetch_state(store: Store, job: BatchJob) -> None:
     """Puts a run's folder where it is made, if it was begun elsewhere and not here."""
-    if store.folder is not None or _newest(task.folder):
+    if store.folder is not None or _newest(job.folder):
         return
-    content = store.read(_state_name(task))
+    content = store.read(_state_name(job))
     if content is not None:
-        shutil.rmtree(task.folder, ignore_errors=True)
+        shutil.rmtree(job.folder, ignore_errors=True)
         # A state that cannot be read is as none: the batch begins again.
         with suppress(zipfile.BadZipFile), zipfile.ZipFile(io.BytesIO(content)) as archive:
-            archive.extractall(task.folder)
+            archive.extractall(job.folder)

@@ -11,9 +11,9 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
+from hedon.ensemble.job import Job, Outcome, work
 from hedon.experiment.interrupt import SIGNALS, count_interrupts
 from hedon.experiment.plan import Moment
-from hedon.jobs.work import Job, Outcome, work
 
 _LOOK_SECONDS = 0.2
 """Longest time between two checks for Ctrl-C [s]."""

@@ -5,16 +5,16 @@ A task goes on from its job's last checkpoint. It finds that in a folder that al
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from importlib import import_module
 from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
+from hedon.ensemble.error import EnsembleError
+from hedon.ensemble.job import Job, Outcome, attempt
+from hedon.ensemble.process import JobListener
 from hedon.experiment.interrupt import count_interrupts
-from hedon.jobs.error import JobError
-from hedon.jobs.process import JobListener
-from hedon.jobs.retry import RetryLimit
-from hedon.jobs.work import Job, Outcome, attempt
 
 T = TypeVar("T", bound=Job)
 
@@ -22,7 +22,33 @@ LOCAL = "local"
 """The address of a cluster that is started on this machine, for these jobs alone."""
 IN_FLIGHT = 4
 """Jobs for each processor that Ray is given at a time: it needs memory and time for each that it knows."""
+TRIES = 5
+"""How often in a row a job may be begun without getting further. One that writes a checkpoint may be lost again."""
 _LOOK_SECONDS = 0.5
+
+
+@dataclass
+class RetryLimit:
+    """Counts how often each job was lost, with its node or alone, without getting further."""
+
+    _seen: dict[Path, tuple[str, int]] = field(default_factory=dict)
+
+    def may_go_on(self, job: Job) -> bool:
+        """Notes that a job was lost. Whether it is worth another try."""
+        place = job.newest()
+        before, count = self._seen.get(job.folder, (place, 0))
+        count = count + 1 if place == before else 1
+        self._seen[job.folder] = place, count
+        return count < TRIES
+
+    def reason(self, job: Job, error: Exception) -> str:
+        """Why a job is given up: which worlds, what was seen last, and what to do."""
+        first = str(error).strip().partition("\n")[0]
+        return (
+            f"its process was lost {TRIES} times in a row without a new checkpoint, the last time with: {first} Its "
+            f"worlds: {job.describe()}. If memory runs out, take nodes with more, or fewer `worlds` in a batch; if "
+            "nodes live too briefly, lower --checkpoint"
+        )
 
 
 def make_on_ray(jobs: Sequence[T], address: str, display: JobListener[T], workers: int = 0) -> dict[Path, Outcome]:
@@ -32,7 +58,7 @@ def make_on_ray(jobs: Sequence[T], address: str, display: JobListener[T], worker
         How each job ended, by its run's folder; jobs that never began are missing.
 
     Raises:
-        JobError: Ray is not installed, or no cluster is at the address.
+        EnsembleError: Ray is not installed, or no cluster is at the address.
     """
     ray = import_ray()
     try:
@@ -43,7 +69,7 @@ def make_on_ray(jobs: Sequence[T], address: str, display: JobListener[T], worker
         else:
             ray.init(address=address, log_to_driver=False)
     except (ConnectionError, ValueError, RuntimeError) as error:
-        raise JobError(f"--ray = {address!r}: no cluster answers there: {error}") from error
+        raise EnsembleError(f"--ray = {address!r}: no cluster answers there: {error}") from error
     try:
         return _see_through(ray, jobs, RetryLimit(), display)
     finally:
@@ -54,7 +80,7 @@ def import_ray() -> Any:
     """Ray, told what is wanted of it; its settings count when it is imported.
 
     Raises:
-        JobError: It is not installed.
+        EnsembleError: It is not installed.
     """
     # It reports to nobody unless asked to.
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
@@ -63,7 +89,7 @@ def import_ray() -> Any:
     try:
         return import_module("ray")
     except ImportError:
-        raise JobError('--ray needs the optional packages: pip install "hedon[ray]"') from None
+        raise EnsembleError('--ray needs the optional packages: pip install "hedon[ray]"') from None
 
 
 def _see_through(ray: Any, jobs: Sequence[T], limit: RetryLimit, display: JobListener[T]) -> dict[Path, Outcome]:

@@ -18,12 +18,12 @@ from hedon.config.dump import digest, dump_toml
 from hedon.config.load import parse_config
 from hedon.config.rule_path import RULE_PATTERN, rule_places
 from hedon.config.validate import rebuild
+from hedon.ensemble.condition import DIGITS, Base, SweepCondition, changes
+from hedon.ensemble.error import EnsembleError
+from hedon.ensemble.store import Store
 from hedon.experiment.argument import parse_seeds
-from hedon.jobs.store import Store
 from hedon.record.folder import holds_run
 from hedon.record.manifest import RuleSource
-from hedon.sweep.condition import DIGITS, Base, SweepCondition, changes
-from hedon.sweep.error import SweepError
 
 PLAN, TABLE = "plan.json", "table.parquet"
 FORMAT = 2
@@ -192,20 +192,20 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
     keep their batches.
 
     Raises:
-        SweepError: a sweep lives there that has no world of this one, or it cannot be written.
+        EnsembleError: a sweep lives there that has no world of this one, or it cannot be written.
     """
     if store.folder is not None and holds_run(store.folder):
-        raise SweepError(f"{store.location} holds a run: give the sweep another place with --out")
+        raise EnsembleError(f"{store.location} holds a run: give the sweep another place with --out")
     plan, before = file.plan, load_plan(store) if store.read(PLAN) is not None else None
     if before is not None:
         shared = set(map(plan.key, plan.conditions)) & set(map(before.key, before.conditions))
         if plan.steps != before.steps:
-            raise SweepError(
+            raise EnsembleError(
                 f"{store.location} holds a sweep of {before.steps:,} steps, and {plan.name}.toml asks for "
                 f"{plan.steps:,}: worlds of a sweep do not get longer, so give another place with --out"
             )
         if not shared or not set(plan.seeds) & set(before.seeds):
-            raise SweepError(
+            raise EnsembleError(
                 f"{store.location} holds another sweep, which has no world of that of {plan.name}.toml: give another "
                 f"place with --out, or go on with that one by `hedon sweep resume {store.location}`"
             )
@@ -228,15 +228,15 @@ def load_plan(store: Store) -> SweepPlan:
     """Reads a plan.
 
     Raises:
-        SweepError: there is none, or it cannot be read.
+        EnsembleError: there is none, or it cannot be read.
     """
     content = store.read(PLAN)
     if content is None:
-        raise SweepError(f"{store.location} holds no sweep: it has no {PLAN}")
+        raise EnsembleError(f"{store.location} holds no sweep: it has no {PLAN}")
     try:
         read: dict[str, Any] = json.loads(content)
         if read["format"] != FORMAT:
-            raise SweepError(
+            raise EnsembleError(
                 f"{store.location}: {PLAN} has format {read['format']}, and this hedon reads {FORMAT}: make the sweep "
                 "again in another place"
             )
@@ -250,7 +250,7 @@ def load_plan(store: Store) -> SweepPlan:
         places = {base: {name: tuple(own) for name, own in each.items()} for base, each in read["places"].items()}
         return SweepPlan(**plain, places=places, conditions=conditions)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
-        raise SweepError(f"{store.location}: {PLAN} cannot be read: {error}") from error
+        raise EnsembleError(f"{store.location}: {PLAN} cannot be read: {error}") from error
 
 
 def _tuples(value: Any) -> Any:
@@ -261,16 +261,16 @@ def load_config_of(store: Store, key: str, base: str, changed: Mapping[str, Any]
     """The config of a condition.
 
     Raises:
-        SweepError: It is missing, or another one.
+        EnsembleError: It is missing, or another one.
         ConfigError: It cannot be read.
     """
     name = _config_name(base)
     content = store.read(name)
     if content is None:
-        raise SweepError(f"{store.location} has no {name}: make the sweep again in another place")
+        raise EnsembleError(f"{store.location} has no {name}: make the sweep again in another place")
     config = rebuild(parse_config(content.decode(), f"{store.location}/{name}"), changed, f"{store.location}/{name}")
     if digest(config)[:DIGITS] != key:
-        raise SweepError(f"{store.location}/{name} is not the config that was planned: make the sweep again elsewhere")
+        raise EnsembleError(f"{store.location}/{name} is not the planned config: make the sweep again elsewhere")
     return config
 
 
@@ -278,7 +278,7 @@ def load_rules(store: Store, config: Config) -> tuple[RuleSource, ...]:
     """The texts of the rules that a condition is pinned to.
 
     Raises:
-        SweepError: One is missing or damaged.
+        EnsembleError: One is missing or damaged.
     """
     return tuple(_load_rule(store, place) for place in rule_places(config))
 
@@ -287,7 +287,7 @@ def _load_rule(store: Store, place: str) -> RuleSource:
     match = re.fullmatch(RULE_PATTERN, place)
     content = store.read(_rule_name(match[3] or "")) if match else None
     if match is None or content is None:
-        raise SweepError(f"{store.location} has no text of the rule {place}: make the sweep again in another place")
+        raise EnsembleError(f"{store.location} has no text of the rule {place}: make the sweep again in another place")
     return RuleSource(match[1], match[2], match[3], content.decode())
 
 

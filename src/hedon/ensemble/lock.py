@@ -5,8 +5,8 @@ from contextlib import contextmanager
 from math import gcd
 from pathlib import Path
 
-from hedon.jobs.error import JobError
-from hedon.jobs.store import Store
+from hedon.ensemble.error import EnsembleError
+from hedon.ensemble.store import Store
 from hedon.record.error import InUseError
 from hedon.record.lock import FolderLock
 
@@ -24,7 +24,7 @@ def lock(store: Store, part: tuple[int, int]) -> Iterator[None]:
     batches write the same rows, so they lose time alone.
 
     Raises:
-        JobError: another process makes jobs of this part.
+        EnsembleError: another process makes jobs of this part.
         RecordError: the folder cannot be written.
     """
     if store.folder is None:
@@ -46,7 +46,7 @@ def _lock_folder(folder: Path, store: Store) -> Iterator[None]:
     try:
         held = FolderLock(folder)
     except InUseError as error:
-        raise JobError(
+        raise EnsembleError(
             f"{store.location} is being made by another process{error.owner}: wait for it, stop it first, or give each "
             "its --part"
         ) from None

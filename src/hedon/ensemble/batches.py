@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from hedon.jobs.lock import lock
-from hedon.jobs.store import Store
-from hedon.sweep.plan import Batch, SweepPlan, done_seeds
-from hedon.sweep.work import RESULTS, WORK, Task, make_task
+from hedon.ensemble.batch import RESULTS, WORK, BatchJob, batch_job
+from hedon.ensemble.lock import lock
+from hedon.ensemble.plan import Batch, SweepPlan, done_seeds
+from hedon.ensemble.store import Store
 
 
 def open_batches(plan: SweepPlan, store: Store, part: tuple[int, int] = (1, 1)) -> list[Batch]:
@@ -18,14 +18,14 @@ def open_batches(plan: SweepPlan, store: Store, part: tuple[int, int] = (1, 1)) 
 
 
 @contextmanager
-def open_tasks(
+def batch_jobs(
     plan: SweepPlan,
     store: Store,
     checkpoint_seconds: float,
     part: tuple[int, int] = (1, 1),
     *,
     on_cluster: bool = False,
-) -> Iterator[list[Task]]:
+) -> Iterator[list[BatchJob]]:
     """The jobs of all batches that have no result, while no other process makes them; one thread each.
 
     Args:
@@ -36,7 +36,7 @@ def open_tasks(
         on_cluster: Whether other machines make them.
 
     Raises:
-        JobError: Another process makes these batches.
+        EnsembleError: Another process makes these batches.
     """
     with lock(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as passing:
         place, where = Path(passing), store.location
@@ -47,4 +47,4 @@ def open_tasks(
             own = hashlib.sha256(store.location.encode()).hexdigest()[:16]
             place = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{own}"
         batches = open_batches(plan, store, part)
-        yield [make_task(where, plan, batch, place / batch.name, checkpoint_seconds) for batch in batches]
+        yield [batch_job(where, plan, batch, place / batch.name, checkpoint_seconds) for batch in batches]

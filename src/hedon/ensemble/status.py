@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from typing import Any
 
+from hedon.ensemble.batch import WORK
+from hedon.ensemble.batches import open_batches
+from hedon.ensemble.collect import read_results
+from hedon.ensemble.plan import SweepPlan
+from hedon.ensemble.store import Store
 from hedon.error import HedonError
-from hedon.jobs.store import Store
 from hedon.record.reader import open_run
-from hedon.sweep.collect import read_results
-from hedon.sweep.plan import SweepPlan
-from hedon.sweep.run import open_batches
-from hedon.sweep.work import WORK
 
 
 @dataclass(frozen=True)

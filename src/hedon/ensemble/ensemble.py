@@ -1,0 +1,114 @@
+"""An ensemble: the worlds that are wanted, and the runs of a folder that hold them.
+
+A world is identified by the digest of its config and by its seed. Studies and assays find theirs here.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+from hedon.analysis.world.record import WorldRecord, read_worlds
+from hedon.config import ConfigError
+from hedon.ensemble.demand import Demand, setting_name, worlds_of
+from hedon.record.error import RecordError
+from hedon.record.folder import MANIFEST
+from hedon.record.reader import Run, open_run
+
+
+@dataclass(frozen=True, eq=False)
+class Ensemble:
+    """Worlds of one or several settings, as far as a folder holds them.
+
+    Attributes:
+        demands: which worlds are wanted, one for each setting.
+        folder: that holds the runs, and gets the missing ones.
+        runs: by name, those that hold some of the worlds from their beginning on.
+        faults: what is wrong with folders that hold a run that cannot be read, and may be needed.
+    """
+
+    demands: Sequence[Demand]
+    folder: Path
+    runs: Sequence[Run] = ()
+    faults: tuple[str, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """How many worlds are wanted."""
+        return worlds_of(self.demands)
+
+    @cached_property
+    def damaged(self) -> dict[str, list[Path]]:
+        """The damaged parts of each run, by its name."""
+        return {run.path.name: run.damaged_parts() for run in self.runs}
+
+    @cached_property
+    def worlds(self) -> dict[tuple[str, int, str], WorldRecord]:
+        """The wanted worlds by their setting's digest, seed and species, as far as their records reach.
+
+        A world may be longer than it need be. Of two that are equally long, the one of an undamaged run is kept.
+        """
+        by_digest = {demand.digest: demand for demand in self.demands}
+        manifests = {run.path.name: run.manifest for run in self.runs}
+        kept: dict[tuple[str, int, str], WorldRecord] = {}
+        for world in read_worlds(sorted(self.runs, key=lambda run: bool(self.damaged[run.path.name]))):
+            manifest = manifests[world.run]
+            demand = by_digest.get(manifest.config_digest or "")
+            if demand is not None and world.seed in demand.steps:
+                known = world if manifest.status in ENDED else world.until(world.recorded_step())
+                # Equal settings can be written in several ways, so the demand names them, not each run.
+                species = f": {world.species}" if len(demand.config.species) > 1 else ""
+                kept[demand.digest, world.seed, world.species] = replace(
+                    known, condition=setting_name(demand.config) + species
+                )
+        return kept
+
+    def runs_of(self, worlds: Iterable[WorldRecord]) -> tuple[Run, ...]:
+        """The runs that hold some worlds."""
+        names = {world.run for world in worlds}
+        return tuple(run for run in self.runs if run.path.name in names)
+
+
+ENDED = ("finished", "interrupted")
+"""The states in which a manifest says how far the run came."""
+
+
+def find_ensemble(demands: Sequence[Demand], folder: Path) -> Ensemble:
+    """Finds the runs in a folder that hold worlds of the settings that are wanted.
+
+    A run that cannot be read is a fault if it may hold one of them.
+    """
+    seeds = {demand.digest: demand.steps.keys() for demand in demands}
+    presets = {(demand.config.preset, demand.config.fidelity) for demand in demands}
+    runs, faults = [], []
+    for path in sorted(folder.glob(f"*/{MANIFEST}")):
+        try:
+            run = open_run(path.parent).load()
+            manifest = run.manifest
+            mine = seeds.get(manifest.config_digest or "", ())
+            is_wanted = manifest.parent is None and any(seed in mine for seed in manifest.seeds)
+            # A config that this version cannot read, as one that lacks a setting, might be one that is wanted.
+            if is_wanted or (manifest.preset, manifest.fidelity) in presets:
+                _ = run.config
+            if is_wanted:
+                runs.append(run)
+        except (RecordError, ConfigError) as error:
+            faults.append(str(error))
+    return Ensemble(demands, folder, runs, tuple(faults))
+
+
+def steps_reached(run: Run) -> dict[int, float]:
+    """Steps that a run has of each seed's world [step]; infinite if the world died out."""
+    manifest = run.manifest
+    if manifest.status in ENDED:
+        done = [
+            math.inf if extinct is not None else steps
+            for steps, extinct in zip(manifest.steps_done, manifest.extinct_steps, strict=True)
+        ]
+        return dict(zip(manifest.seeds, done, strict=True))
+    # The manifest of a run that is still running, or was killed, does not say how far it came; its records do.
+    reach: dict[int, float] = {}
+    for world in read_worlds([run]):  # one for each species
+        reach[world.seed] = min(reach.get(world.seed, math.inf), world.recorded_step())
+    return reach

@@ -1,0 +1,108 @@
+"""The jobs that make the runs of an ensemble: worlds that exist are used, too short ones go on, others begin."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from hedon.config import Config, digest
+from hedon.ensemble.demand import Demand, setting_name
+from hedon.ensemble.ensemble import Ensemble, steps_reached
+from hedon.experiment.plan import Display, RunPlan, free_folder, seed_span
+from hedon.experiment.resume import make, require_setting
+from hedon.record.folder import CHECKPOINT_SECONDS, checkpoint_paths
+
+LONGEST_NAME = 150
+"""Most characters of a setting in the name of a run's folder."""
+
+
+@dataclass(frozen=True)
+class RunJob:
+    """A run to begin or to continue.
+
+    Attributes:
+        plan: of the run; its threads are given when it begins.
+        world_steps: steps still to run, summed over its worlds [step].
+    """
+
+    plan: RunPlan
+    world_steps: int
+
+    @property
+    def folder(self) -> Path:
+        """The run's folder."""
+        return self.plan.out
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """Of its worlds."""
+        return self.plan.seeds
+
+    @property
+    def steps(self) -> int:
+        """Of each world in the end [step]."""
+        return self.plan.steps
+
+    @property
+    def threads(self) -> int:
+        """One for each world."""
+        return len(self.plan.seeds)
+
+    def newest(self) -> str:
+        """The name of its last checkpoint; empty where there is none."""
+        return max((path.name for path in checkpoint_paths(self.folder)), default="")
+
+    def describe(self) -> str:
+        """Its config and seeds."""
+        return f"{self.plan.config.name}, seed {', '.join(map(str, self.plan.seeds))}"
+
+    def make(self, threads: int, display: Display | None) -> str:
+        """Begins, continues, or only reads the run; see `hedon.experiment.resume.make`."""
+        return make(replace(self.plan, threads=threads), display).status
+
+
+def run_jobs(ensemble: Ensemble, checkpoint_seconds: float = CHECKPOINT_SECONDS) -> list[RunJob]:
+    """The runs that are missing or too short, the longest first.
+
+    A world that died out has all the steps that it can have. It counts, and no other world replaces it.
+
+    Raises:
+        RecordError: the folder of a demand's name holds a run with other settings.
+    """
+    jobs: list[RunJob] = []
+    for demand in ensemble.demands:
+        mine = [run for run in ensemble.runs if run.manifest.config_digest == demand.digest and demand.has_frames(run)]
+        reach = {run.path: steps_reached(run) for run in mine}
+        too_short: dict[Path, int] = {}
+        missing: dict[int, list[int]] = {}
+        for seed, steps in demand.steps.items():
+            holders = [run for run in mine if seed in run.manifest.seeds]
+            longest = max(holders, key=lambda run: reach[run.path][seed], default=None)
+            if longest is None:
+                missing.setdefault(steps, []).append(seed)
+            elif reach[longest.path][seed] < steps:
+                too_short[longest.path] = max(too_short.get(longest.path, 0), steps)
+
+        for run in mine:
+            if (steps := too_short.get(run.path)) is not None:
+                left = sum(max(0, steps - int(min(done, steps))) for done in reach[run.path].values())
+                jobs.append(_job(demand, run.manifest.seeds, steps, run.path, checkpoint_seconds, left))
+        for steps, seeds in missing.items():
+            if demand.name:
+                require_setting(ensemble.folder / demand.name, demand.digest)
+            name = demand.name or f"{folder_name(demand.config)}-{seed_span(seeds)}"
+            free = free_folder(ensemble.folder / name, [job.folder for job in jobs])
+            jobs.append(_job(demand, seeds, steps, free, checkpoint_seconds, steps * len(seeds)))
+    return sorted(jobs, key=lambda job: -job.world_steps)
+
+
+def _job(demand: Demand, seeds: Sequence[int], steps: int, out: Path, checkpoint: float, left: int) -> RunJob:
+    plan = RunPlan(demand.config, seeds, steps, out, 0, demand.frames, checkpoint, demand.founders, rules=demand.rules)
+    return RunJob(plan, left)
+
+
+def folder_name(config: Config) -> str:
+    """A name for the run of a setting that tells it from the others: "baseline-corrected-learning.entropy_coef-0.0"."""
+    name = re.sub(r"[^A-Za-z0-9_.-]+", "-", setting_name(config)).replace("--", "-").strip("-")
+    # A setting with many changes can make a name longer than file systems allow.
+    return name if len(name) <= LONGEST_NAME else f"{config.preset}-{config.fidelity}-{digest(config)[:8]}"
