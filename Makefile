@@ -40,9 +40,9 @@ SUITE = $(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses $(WORKERS) --di
 suite: tools $(UV)
 	$(SUITE) -m "not long and not more"
 
-# One worker more, since these tests wait for browsers and processes.
+# Two workers more, since these tests wait for browsers and processes.
 suite-more: tools $(UV)
-	$(SUITE) --numprocesses $$(($(WORKERS) + 1)) -m "more and not long"
+	$(SUITE) --numprocesses $$(($(WORKERS) + 2)) -m "more and not long"
 
 static: tools $(UV)
 	$(RUN) ruff check .

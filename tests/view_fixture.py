@@ -6,7 +6,7 @@ import pytest
 from view_page import CHROMIUM, FLAGS, SIZE, Watched, record
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser():
     playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright: uv sync --group browser")
     if not CHROMIUM.exists():
@@ -17,7 +17,7 @@ def browser():
         opened.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def run_folder(tmp_path_factory):
     return record(tmp_path_factory.mktemp("view") / "run", 2048)
 

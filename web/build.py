@@ -3,8 +3,10 @@
 `make viewer` calls it. It needs Node with npm for the page, and the dependency group `viewer` for the modules.
 """
 
+import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -64,15 +66,18 @@ def sources() -> list[tuple[str, str]]:
 
 
 def build_module(name: str, folder: Path) -> Path:
-    """Compiles one of `MODULES` into a folder; returns its path."""
+    """Compiles one of `MODULES` into a folder, as many sources at a time as there are processors; returns its path."""
     compiler = [sys.executable, "-m", "ziglang", "c++"]
     out = folder / name
-    with TemporaryDirectory() as objects:
-        made = []
-        for source, optimized in sources():
-            made.append(str(Path(objects) / f"{len(made)}.o"))
-            command = [*compiler, *FLAGS, optimized, *MODULES[name], "-c", source, "-o", made[-1]]
+    with TemporaryDirectory() as objects, ThreadPoolExecutor(os.cpu_count()) as pool:
+
+        def compiled(index: int, source: str, optimized: str) -> str:
+            made = str(Path(objects) / f"{index}.o")
+            command = [*compiler, *FLAGS, optimized, *MODULES[name], "-c", source, "-o", made]
             subprocess.run(command, cwd=ROOT, check=True)
+            return made
+
+        made = list(pool.map(compiled, *zip(*((i, *each) for i, each in enumerate(sources())), strict=True)))
         subprocess.run([*compiler, *FLAGS, *MODULES[name], *LINK, *made, "-o", str(out)], cwd=ROOT, check=True)
     out.chmod(0o644)
     return out

@@ -25,7 +25,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("study")
     answer = call(folder, "run", "weights-baseline", "history-baseline", "--seeds", "1-2", "--steps", "1024")
     assert answer.returncode == 0, answer.stderr
-    assert "2 items (corrected) from 2 worlds: 1 run to make in runs, 2,048 world-steps" in answer.stdout
+    assert "2 items (corrected), 2 worlds: 1 run to make, 2,048 world-steps, in runs" in answer.stdout
     return folder
 
 
@@ -33,7 +33,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_items_of_settings_alone_need_no_run(tmp_path: Path) -> None:
     answer = call(tmp_path, "run", *LAWS, "--fidelity", "released")
     assert answer.returncode == 0, answer.stderr
-    assert "from 0 worlds: 0 runs to make" in answer.stdout
+    assert "0 worlds: none is needed" in answer.stdout
     assert not (tmp_path / "runs").exists()
     found = json.loads((tmp_path / "studies" / NAME / "study.json").read_text(encoding="utf-8"))
     assert {item["name"] for item in found["items"]} == set(LAWS)
@@ -61,10 +61,10 @@ def test_the_page_holds_its_figures_and_says_what_they_are_made_of(made: Path) -
 
 def test_what_is_there_is_used_and_more_is_added(made: Path) -> None:
     again = call(made, "run", "weights-baseline", "--seeds", "1-2", "--steps", "1024")
-    assert "0 runs to make" in again.stdout
+    assert "all are there" in again.stdout
     more = call(made, "run", "weights-baseline", "--seeds", "2-3", "--steps", "2048")
     assert more.returncode == 0, more.stderr
-    assert "2 runs to make in runs, 4,096 world-steps" in more.stdout
+    assert "2 runs to make, 4,096 world-steps, in runs" in more.stdout
     assert hedon.open_run(made / "runs" / "baseline-corrected-s1-2").manifest.steps_done == (2048, 2048)
     assert hedon.open_run(made / "runs" / "baseline-corrected-s3").manifest.steps_done == (2048,)
 
@@ -112,7 +112,7 @@ def test_parts_on_several_machines_make_all_worlds_and_the_script_calls_them(tmp
         answer = call(tmp_path, "run", *words, "--part", part)
         assert answer.returncode == 0, answer.stderr
     assert not (tmp_path / "studies").exists(), "a report is made of all parts"
-    assert "0 runs to make" in call(tmp_path, "run", *words).stdout
+    assert "all are there" in call(tmp_path, "run", *words).stdout
     answer = call(tmp_path, "run", *words, "--slurm", "--jobs", "9", "--runs", "shared runs")
     assert answer.returncode == 0, answer.stderr
     script = (tmp_path / f"{NAME}.sh").read_text(encoding="utf-8")

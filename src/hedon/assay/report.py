@@ -3,13 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from matplotlib.figure import Figure
-
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.resample import Estimate
 from hedon.assay.sample import Sample
 from hedon.config.dump import digest
-from hedon.report.answer import WORLDS, Answer
+from hedon.figure.named import NamedFigure
+from hedon.report.answer import WORLDS, Answer, simple_answer
 
 
 def assay_answer(
@@ -18,7 +17,7 @@ def assay_answer(
     content: Mapping[str, Any],
     tables: Sequence[ResultTable],
     intro: str,
-    figure: Figure,
+    figure: NamedFigure,
     files: Mapping[str, str] | None = None,
 ) -> Answer:
     """What an assay found, with its worlds."""
@@ -43,7 +42,7 @@ def assay_answer(
         ],
     }
     title = f"{kind.capitalize()}: {config.name} ({config.fidelity})"
-    return Answer(kind, title, {**head, **content}, tables, intro, {kind: figure}, files or {})
+    return simple_answer(kind, title, {**head, **content}, tables, intro, [figure], files)
 
 
 def world_table(rows: Sequence[Mapping[str, Any]]) -> ResultTable:

@@ -9,6 +9,7 @@ from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.contest import Contest, estimate, sample_lines
 from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
 from hedon.assay.sample import Sample
+from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
 from hedon.report.answer import Answer
 
@@ -26,7 +27,8 @@ def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Se
     content = {"groups": list(groups), "selection": vars(found.selection), "share": vars(found.share)}
     content |= {name: getattr(found, name) for name in ("start", "p", "fixed", "lost", "generations")}
     intro = f"{groups[0]} against {groups[1]}, without mutation. {world_line(samples)}"
-    return assay_answer(kind, samples, content, contest_tables(found), intro, draw_contest(found))
+    figure = NamedFigure(kind, "Which group grows?", draw_contest(found))
+    return assay_answer(kind, samples, content, contest_tables(found), intro, figure)
 
 
 def contest_tables(contest: Contest) -> list[ResultTable]:

@@ -11,6 +11,7 @@ from hedon.assay.contest import sample_lines
 from hedon.assay.frequency import VERDICTS, Frequency, estimate_frequency
 from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
 from hedon.assay.sample import Sample
+from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, styled
 from hedon.report.answer import FACTORS, Answer
 
@@ -37,7 +38,8 @@ def frequency_answer(
         for lines in each
     ]
     tables = [*frequency_tables(found), world_table(worlds)]
-    return assay_answer("frequency", samples, content, tables, intro, draw_frequency(found))
+    figure = NamedFigure("frequency", "Does growth depend on the share?", draw_frequency(found))
+    return assay_answer("frequency", samples, content, tables, intro, figure)
 
 
 def frequency_tables(found: Frequency) -> list[ResultTable]:

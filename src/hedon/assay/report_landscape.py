@@ -13,6 +13,7 @@ from hedon.assay.landscape import Landscape, measure_landscape
 from hedon.assay.outcome import MEASURES
 from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
 from hedon.assay.sample import Sample
+from hedon.figure.named import NamedFigure
 from hedon.report.answer import Answer
 
 OUTCOMES = "founders-outcome.csv"
@@ -29,7 +30,7 @@ def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], 
     first = f"{found.founders} founders in each world, no mutation. {world_line(samples)}"
     intro = "\n".join([first, "", *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items())])
     files = {OUTCOMES: found.outcomes.write_csv()}
-    figure = draw_landscape(found, ends)
+    figure = NamedFigure("landscape", "How fit is each reward?", draw_landscape(found, ends))
     return assay_answer("landscape", samples, _landscape_json(found), tables, intro, figure, files)
 
 

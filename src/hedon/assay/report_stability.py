@@ -9,6 +9,7 @@ from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.report import assay_answer, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.assay.stability import VERDICTS, Stability, judge, measure_stability
+from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
 from hedon.report.answer import FACTORS, Answer
 
@@ -31,7 +32,7 @@ def stability_answer(points: Sequence[str], samples: Sequence[Sample]) -> Answer
     ]
     lines = [f"- `{each.name}`: {each.generations:.0f} generations, {each.extinct} worlds died out" for each in starts]
     intro = "\n".join([f"Evolution from {', and from '.join(points)}. {world_line(samples)}", "", *lines])
-    figure = draw_stability(starts)
+    figure = NamedFigure("stability", "Where do weights go?", draw_stability(starts))
     summary = {"starts": content, FACTORS: ["run"]}
     return assay_answer("stability", samples, summary, stability_tables(starts), intro, figure)
 

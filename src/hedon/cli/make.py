@@ -49,11 +49,10 @@ def make_worlds(
 
     ensemble = find_ensemble(demands, folder)
     jobs = run_jobs(ensemble, checkpoint_seconds)
-    console.print(
-        f"hedon: {what}, {count(ensemble.size, 'world')}: {count(len(jobs), 'run')} to make in {folder}, "
-        f"{sum(job.world_steps for job in jobs):,} world-steps",
-        soft_wrap=True,
-    )
+    said = "all are there" if ensemble.size else "none is needed"
+    if jobs:
+        said = f"{count(len(jobs), 'run')} to make, {sum(job.world_steps for job in jobs):,} world-steps, in {folder}"
+    console.print(f"hedon: {what}, {count(ensemble.size, 'world')}: {said}", soft_wrap=True)
     if jobs:
         tell_left_out(ensemble.faults)
         require_folder(folder)

@@ -232,7 +232,7 @@ def _report(studies: "Sequence[Study]", request: "Request", runs: Path, out: Pat
 
     gathered = gather(request, runs)
     tell_left_out(gathered.faults)
-    page, made = write_studies(studies, gathered, out)
-    for one in made:
-        console.print(f"{one.item.name}: {one.item.title}", soft_wrap=True)
+    page = write_studies(studies, gathered, out)
+    for item in request.items:
+        console.print(f"{item.name}: {item.title}", soft_wrap=True)
     console.print(f"wrote {page}, with all figures and tables next to it", soft_wrap=True)

@@ -171,8 +171,9 @@ def report(
     names = [name.strip() for name in only.split(",")] if only else []
     folder = out or (store.folder or Path("sweeps") / made.name) / "report"
     found = sweep_answer(made, write_table(made, store), names)
-    data, page, *figures = write_answer(folder, found)
-    make_console().print(f"wrote {page}, {data} and {len(figures)} figures beside them", soft_wrap=True)
+    figures = [path for path in write_answer(folder, found) if path.suffix == ".svg"]
+    page = folder / f"{found.name}.html"
+    make_console().print(f"wrote {page}, its data and {count(len(figures), 'figure')} beside it", soft_wrap=True)
 
 
 def _written(file: Path, out: str | None, *, skip_invalid: bool) -> "tuple[SweepPlan, Store]":

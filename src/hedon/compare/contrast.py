@@ -15,8 +15,9 @@ from hedon.compare.match import Matched, match
 from hedon.compare.response import responses
 from hedon.compare.source import WorldTable
 from hedon.config.problem import format_value, nearest
+from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, styled
-from hedon.report.answer import Answer
+from hedon.report.answer import Answer, simple_answer
 from hedon.statistic.contrast import Contrast, independent_contrast, paired_contrast
 from hedon.statistic.correction import holm
 from hedon.statistic.minimum import FOR_INTERVAL
@@ -169,7 +170,8 @@ def compare_answer(
     intro = f"{by}: {names[1]} against {names[0]}"
     intro += f", worlds of {worlds.steps:,} steps." if worlds.steps else "."
     title = f"{worlds.name}: {by}, {names[0]} and {names[1]}"
-    return Answer("compare", title, content, tables, intro, {"compare": draw_contrasts(found, by, names)})
+    figure = NamedFigure("compare", "Which measures differ?", draw_contrasts(found, by, names))
+    return simple_answer("compare", title, content, tables, intro, [figure])
 
 
 def _contrasts(found: Sequence[Compared], names: Sequence[str], others: Sequence[str]) -> ResultTable:

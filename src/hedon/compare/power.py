@@ -14,8 +14,9 @@ from hedon.compare.error import CompareError
 from hedon.compare.match import known_values
 from hedon.compare.response import responses
 from hedon.compare.source import WorldTable
+from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, GREEN, MUTED, ORANGE, VERMILION, head, new_figure, styled
-from hedon.report.answer import Answer
+from hedon.report.answer import Answer, simple_answer
 from hedon.statistic.interval import distance_interval
 from hedon.statistic.power import Design, contrast_power, effect_seen, worlds_needed
 
@@ -126,7 +127,8 @@ def power_answer(
     intro = f"From {pilot}. " if pilot else ""
     intro += f"The tests of `hedon compare`, at {level:g}, find an effect with chance {power:g}."
     figure = draw_power(found, effects, power, level)
-    return Answer("power", "How many worlds are needed", content, tables, intro, {"power": figure})
+    drawn = NamedFigure("power", "How likely is an effect found?", figure)
+    return simple_answer("power", "How many worlds are needed", content, tables, intro, [drawn])
 
 
 def _needed(found: Sequence[PilotSpread], effects: Sequence[float], power: float, level: float) -> ResultTable:

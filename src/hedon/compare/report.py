@@ -6,14 +6,14 @@ from itertools import combinations
 from typing import Any
 
 import polars as pl
-from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
 from hedon.compare.error import CompareError
 from hedon.compare.figure import draw_curves, draw_map
 from hedon.compare.response import points, responses
 from hedon.ensemble.plan import SweepPlan
-from hedon.report.answer import Answer
+from hedon.figure.named import NamedFigure
+from hedon.report.answer import Answer, simple_answer
 from hedon.statistic.interval import Interval
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.text import count
@@ -36,14 +36,16 @@ def sweep_answer(plan: SweepPlan, table: pl.DataFrame, only: Sequence[str] = ())
     if table.is_empty():
         raise CompareError("no batch of the sweep is done yet: there is nothing to report")
     shown = responses(table, only, plan.factors)
-    figures: dict[str, Figure] = {}
+    figures: list[NamedFigure] = []
     varied = [factor for factor in plan.factors if table[factor].n_unique() > 1]
     for factor in varied:
-        figures[f"curve-{_slug(factor)}"] = draw_curves(table, factor, shown, ranged=factor in plan.ranged)
+        drawn = draw_curves(table, factor, shown, ranged=factor in plan.ranged)
+        figures.append(NamedFigure(f"curve-{_slug(factor)}", f"How does {factor} act?", drawn))
     for pair in _crossed(table, varied):
         for name, title in shown.items():
             stem = f"map-{_slug(pair[0])}-{_slug(pair[1])}-{name.replace('.', '-')}"
-            figures[stem] = draw_map(table, pair, name, title)
+            question = f"{title}, by {pair[0]} and {pair[1]}"
+            figures.append(NamedFigure(stem, question, draw_map(table, pair, name, title)))
     intro = (
         f"{table.height} of {count(plan.worlds, 'world')} ({count(len(plan.conditions), 'setting')} x "
         f"{count(len(plan.seeds), 'seed')}) of {count(plan.steps, 'step')}; {int(table['extinct'].sum())} died out"
@@ -51,7 +53,7 @@ def sweep_answer(plan: SweepPlan, table: pl.DataFrame, only: Sequence[str] = ())
     )
     content = {"sweep": plan.name, "steps": plan.steps, "factors": list(plan.factors)}
     tables = [settings_table(plan, table, shown), _responses_table(plan, table, shown)]
-    return Answer("report", f"Sweep {plan.name}", content, tables, intro, figures)
+    return simple_answer("report", f"Sweep {plan.name}", content, tables, intro, figures)
 
 
 def _responses_table(plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str]) -> ResultTable:

@@ -1,6 +1,5 @@
 """Answers all topics about some runs, and writes the answers: `analysis.json` and one CSV file per table."""
 
-import io
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -16,6 +15,7 @@ from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.report.earlier import earlier_names
 from hedon.report.moment import unfinished
+from hedon.report.table import table_csv, table_json
 from hedon.report.topic import TOPICS, Tell, require_topics, run_topics, tell_nobody
 from hedon.report.words import answers
 from hedon.text import brief
@@ -83,9 +83,7 @@ def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
     text = json.dumps(_analysis_json(analysis), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     contents = {_JSON: text.encode()}
     for name, table in analysis.tables.items():
-        buffer = io.BytesIO()
-        table.rows.write_csv(buffer)
-        contents[f"{name}.csv"] = buffer.getvalue()
+        contents[f"{name}.csv"] = table_csv(table).encode()
     with one_writer(folder, "the analysis"):
         for name in earlier_names(folder / _JSON, "tables") - analysis.tables.keys():
             (folder / f"{name}.csv").unlink(missing_ok=True)
@@ -114,9 +112,6 @@ def _analysis_json(analysis: Analysis) -> dict[str, Any]:
             "unfinished": analysis.unfinished,
             "worlds": worlds,
             "answers": analysis.answers,
-            "tables": {
-                name: {"title": table.title, "note": table.note, "rows": table.rows.to_dicts()}
-                for name, table in analysis.tables.items()
-            },
+            "tables": {name: table_json(table) for name, table in analysis.tables.items()},
         }
     )

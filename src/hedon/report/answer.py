@@ -1,4 +1,4 @@
-"""Writes what one question found: a JSON summary, a page, figures."""
+"""What was found, ready to be written: one page as HTML and Markdown, a JSON file, tables and figures beside it."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -6,16 +6,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
-
 from hedon.analysis.result import ResultTable
-from hedon.figure.style import save_figure
+from hedon.figure.named import NamedFigure
+from hedon.figure.style import svg_bytes
 from hedon.measure.summary import plain
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.report.earlier import earlier_names
-from hedon.report.markdown import pipe_table
-from hedon.report.table import cells
+from hedon.report.page import FigureFile, Page, Section, html_page, markdown_page
+from hedon.report.table import table_json
 
 WORLDS, FACTORS = "world", "factors"
 """In the JSON of an assay or a study: its table with a row per world, and the columns that distinguish conditions."""
@@ -23,25 +22,46 @@ WORLDS, FACTORS = "world", "factors"
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What one question found, as it is printed and written.
+    """What was found about some worlds, as it is printed and written.
 
     Attributes:
         name: The stem of its files.
-        title: Of the page.
-        content: What the summary contains besides the tables.
-        tables: For the terminal, the summary and the page.
-        intro: First lines of the page, in Markdown.
-        figures: By the stems of their files.
-        files: Further files, by name.
+        page: What a reader sees.
+        content: What the JSON file contains besides the tables; None if there is no such file.
+        tables: For the JSON file and the terminal.
+        files: Further files, by their paths.
     """
 
     name: str
-    title: str
-    content: Mapping[str, Any]
-    tables: Sequence[ResultTable]
-    intro: str
-    figures: Mapping[str, Figure]
+    page: Page
+    content: Mapping[str, Any] | None = None
+    tables: Sequence[ResultTable] = ()
     files: Mapping[str, str] = field(default_factory=dict)
+
+
+def simple_answer(
+    name: str,
+    title: str,
+    content: Mapping[str, Any],
+    tables: Sequence[ResultTable],
+    lead: str,
+    figures: Sequence[NamedFigure],
+    files: Mapping[str, str] | None = None,
+) -> Answer:
+    """The answer to one question: figures, then a section for each table that is shown."""
+    drawn = [drawn_file(figure) for figure in figures]
+    page = Page(title, lead, [Section("", drawn), *(table_section(each) for each in tables if each.shown)])
+    return Answer(name, page, content, tables, files or {})
+
+
+def table_section(table: ResultTable) -> Section:
+    """A section that holds a table."""
+    return Section(table.title, [table], table.name)
+
+
+def drawn_file(named: NamedFigure, path: str = "") -> FigureFile:
+    """A figure as a file of its name, or of another path."""
+    return FigureFile(named.question, path or f"{named.name}.svg", svg_bytes(named.figure), named.caption)
 
 
 def write_answer(folder: Path, answer: Answer) -> list[Path]:
@@ -50,19 +70,30 @@ def write_answer(folder: Path, answer: Answer) -> list[Path]:
     Raises:
         RecordError: A file cannot be written.
     """
-    name, tables = answer.name, answer.tables
-    shown = {each.name: {"title": each.title, "note": each.note, "rows": each.rows.to_dicts()} for each in tables}
-    content = {**answer.content, "figures": list(answer.figures), "tables": shown}
-    summary = json.dumps(plain(content), indent=1, ensure_ascii=False, allow_nan=False)
-    lines = [f"# {answer.title}", "", answer.intro, ""]
-    lines += [line for stem in answer.figures for line in (f"![{answer.title}: {stem}]({stem}.svg)", "")]
-    for each in (table for table in tables if table.shown):
-        lines += [f"## {each.title}", "", pipe_table(*cells(each)), "", *([each.note, ""] if each.note else [])]
-    files = {f"{name}.json": summary + "\n", f"{name}.md": "\n".join(lines).rstrip() + "\n", **answer.files}
-    with one_writer(folder, "the answer"):
-        for stale in earlier_names(folder / f"{name}.json", "figures") - answer.figures.keys():
-            (folder / f"{stale}.svg").unlink(missing_ok=True)
-        for each, text in files.items():
-            write_atomically(folder / each, lambda file, text=text: file.write(text.encode()))
-        drawn = [save_figure(figure, folder / f"{stem}.svg") for stem, figure in answer.figures.items()]
-        return [*(folder / each for each in files), *drawn]
+    with one_writer(folder, "the report"):
+        return replace_files(folder, answer)
+
+
+def replace_files(folder: Path, answer: Answer) -> list[Path]:
+    """As `write_answer`, in a folder into which no other process writes."""
+    name, page = answer.name, answer.page
+    blocks = [block for section in page.sections for block in section.blocks]
+    figures = {block.path: block.svg for block in blocks if isinstance(block, FigureFile)}
+    files: dict[str, str | bytes] = {f"{name}.html": html_page(page), f"{name}.md": markdown_page(page), **answer.files}
+    stale: set[str] = set()
+    if answer.content is not None:
+        summary = folder / f"{name}.json"
+        own = {Path(path).stem: path for path in figures}
+        shown = {each.name: table_json(each) for each in answer.tables}
+        content = {**answer.content, "figures": list(own), "tables": shown}
+        text = json.dumps(plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+        files = {summary.name: text, **files}
+        stale = earlier_names(summary, "figures") - own.keys()
+    places = {str(Path(path).parent) for path in figures} or {"."}
+    for each in (folder / place / f"{stem}.svg" for place in places for stem in stale):
+        each.unlink(missing_ok=True)
+    for path, text in {**files, **figures}.items():
+        data = text.encode() if isinstance(text, str) else text
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(folder / path, lambda file, data=data: file.write(data))
+    return [folder / path for path in (*files, *figures)]

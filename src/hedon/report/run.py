@@ -6,13 +6,15 @@ same on one page: `report.html`, which holds its figures and needs nothing else,
 
 import json
 import re
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
+from hedon.analysis.world.record import Conditions
 from hedon.config.color import food_colors
+from hedon.demography.forecast import setting_warnings
 from hedon.figure.named import NamedFigure
 from hedon.figure.world import draw_world, telling_agent
 from hedon.measure.summary import plain, summarize
@@ -23,13 +25,20 @@ from hedon.record.lock import one_writer
 from hedon.record.reader import Run
 from hedon.record.snapshot import load_snapshot
 from hedon.report.analysis import ANALYSIS, Analysis, analyze, write_analysis
+from hedon.report.answer import Answer, drawn_file, replace_files
 from hedon.report.condition import condition_figures
 from hedon.report.figure import WORLD
-from hedon.report.page import FigureFile, report_pages, write_figure
+from hedon.report.markdown import escape_markdown
+from hedon.report.page import FigureFile, Page, Section, describe_worlds, versions
 from hedon.report.topic import TOPICS, Tell, tell_nobody
+from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.study.catalogue import reported_figures
 
-HTML, MARKDOWN = "report.html", "report.md"
+EXPLANATION = (
+    "Agents are rewarded by weights that they inherit with mutations, and learn what pays. A weight that nothing "
+    "selects changes too, by chance: how far, genes tell that mutate along the same pedigree and do nothing."
+)
+SETTING = "What the setting itself says, before any run:"
 
 
 def write_report(
@@ -58,20 +67,67 @@ def write_report(
     with one_writer(folder, "the report"):
         # All figures together count as many steps as the topics.
         analysis = analyze(runs, tell=lambda done, of, step: tell(done, 2 * of, step))
-        tell(len(TOPICS), 2 * len(TOPICS), "figures")
+        tell(len(TOPICS), 2 * len(TOPICS), "drawing and writing" if figures else "writing")
         summaries = [_write_summary(run) for run in analysis.runs]
-        (folder / FIGURES).mkdir(exist_ok=True)
-        drawn: list[FigureFile] = []
-        for group, named in _figures(analysis, faults) if figures else ():
-            drawn.append(_save(folder, group, named, {figure.path for figure in drawn}))
+        drawn: dict[str, list[FigureFile]] = {}
+        for condition, named in _figures(analysis, faults) if figures else ():
+            taken = {figure.path for group in drawn.values() for figure in group}
+            drawn.setdefault(condition, []).append(_as_file(named, taken))
         answers = write_analysis(analysis, folder / ANALYSIS)[0]
-        pages = dict(zip((HTML, MARKDOWN), report_pages(analysis, drawn), strict=True))
-        for name, text in pages.items():
-            content = text.encode()
-            write_atomically(folder / name, lambda file, content=content: file.write(content))
+        pages = replace_files(folder, Answer("report", report_page(analysis, drawn)))
     if faults:
         raise faults[0]
-    return [*summaries, *(folder / name for name in pages), answers, *(folder / figure.path for figure in drawn)]
+    return [*summaries, *pages[:2], answers, *pages[2:]]
+
+
+def report_page(analysis: Analysis, figures: Mapping[str, Sequence[FigureFile]]) -> Page:
+    """The report of some runs.
+
+    Args:
+        analysis: its numbers.
+        figures: of each condition, the first of which shows what evolved.
+    """
+    shown = {name: table for name, table in analysis.tables.items() if table.shown}
+    verdict = [shown.pop("verdict")] if "verdict" in shown else []
+    evolved, details = [], []
+    for number, (name, worlds) in enumerate(analysis.conditions.items(), start=1):
+        drawn = figures.get(name, ())
+        warnings = _lines(setting_warnings(worlds[0].config, worlds[0].species))
+        lists = [SETTING, warnings] if warnings else []
+        evolved.append(Section(f"{name}: what evolved?", [_lines(analysis.answers.get(name, ())), *drawn[:1]]))
+        details.append(Section(name, [describe_worlds(worlds), *lists, *drawn[1:]], f"condition-{number}"))
+    return Page(
+        " · ".join(analysis.conditions),
+        f"Made by hedon from records of version {versions(analysis.runs)}. Intervals are 95 %, over worlds, and shown "
+        f"from five worlds on.\n\n{EXPLANATION}",
+        [
+            *evolved,
+            *(Section(table.title, [table], "verdicts", "Verdicts") for table in verdict),
+            *details,
+            Section("Tables", list(shown.values()), "tables"),
+        ],
+        _lines([*analysis.unfinished, *narrow_intervals(analysis.conditions)]),
+        analysis.conditions,
+        analysis.runs,
+    )
+
+
+def narrow_intervals(conditions: Conditions) -> list[str]:
+    """A sentence for each condition of which some worlds died out: so far from normal values, t is too narrow."""
+    told = []
+    for name, worlds in conditions.items():
+        gone = sum(world.extinct_step is not None for world in worlds)
+        if 0 < gone < len(worlds) and len(worlds) >= FOR_INTERVAL:
+            told.append(
+                f"{gone} of {len(worlds)} worlds of {name} died out, so intervals of its numbers alive are too narrow: "
+                "with one world in five at 0 they miss the mean in 24 % of cases with five worlds, in 11 % with ten."
+            )
+    return told
+
+
+def _lines(sentences: Iterable[str]) -> tuple[str, ...]:
+    """Sentences as Markdown that shows them."""
+    return tuple(map(escape_markdown, sentences))
 
 
 def run_summary(run: Run) -> dict[str, Any]:
@@ -118,8 +174,7 @@ def _with_prefix(prefix: str, named: NamedFigure, *, several: bool) -> NamedFigu
     return replace(named, name=f"{slug}-{named.name}") if several else named
 
 
-def _save(folder: Path, condition: str, named: NamedFigure, taken: Container[str]) -> FigureFile:
-    """Writes a figure under its name, with a number where another has it: prefixes may differ in signs alone."""
+def _as_file(named: NamedFigure, taken: Container[str]) -> FigureFile:
+    """A figure as a file of its name, with a number where another has it: prefixes may differ in signs alone."""
     names = (f"{FIGURES}/{named.name}{end}.svg" for end in chain([""], (f"-{i}" for i in count(2))))
-    path = next(name for name in names if name not in taken)
-    return write_figure(folder, condition, named, path)
+    return drawn_file(named, next(name for name in names if name not in taken))

@@ -1,9 +1,7 @@
 """Makes what was asked of some studies, and writes it: figures, tables, and one page that holds all of it."""
 
-import io
-import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,70 +10,103 @@ from hedon.analysis.topic.world import regime
 from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.figure.named import NamedFigure
 from hedon.measure.catalogue import world_row
-from hedon.measure.summary import plain
-from hedon.record.atomic import write_atomically
 from hedon.record.folder import FIGURES
-from hedon.record.lock import one_writer
-from hedon.report.answer import FACTORS, WORLDS
-from hedon.report.page import FigureFile, write_figure
-from hedon.report.study_page import HTML, BuiltItem, study_pages
+from hedon.report.answer import FACTORS, WORLDS, Answer, drawn_file, table_section, write_answer
+from hedon.report.markdown import escape_markdown
+from hedon.report.page import FigureFile, Folded, Page, Section, versions
+from hedon.report.table import table_csv
 from hedon.study.gather import Gathered
 from hedon.study.item import Item, ItemInputs
 from hedon.study.study import Study
 from hedon.study.verdict_table import verdict
 from hedon.text import count
 
+NAME = "study"
+"""The stem of the page and of the JSON file."""
 TABLES = "tables"
 """Folder of the tables beside the page."""
-JSON = "study.json"
+NOTHING = "Nothing to show yet: no world is there."
 CONDITION = "condition"
 """The column of a condition's label in the table of worlds."""
 
 
-def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) -> tuple[Path, list[BuiltItem]]:
+def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) -> Path:
     """Makes every item of some studies and writes it into a folder, over what is there.
 
     Returns:
-        The page in HTML, and the items.
+        The page in HTML.
 
     Raises:
         RecordError: the folder cannot be written.
     """
-    with one_writer(folder, "the studies"):
-        return folder / HTML, _write(studies, gathered, folder)
-
-
-def _write(studies: Sequence[Study], gathered: Gathered, folder: Path) -> list[BuiltItem]:
-    for name in (FIGURES, TABLES):
-        (folder / name).mkdir(exist_ok=True)
     inputs = {item.name: gathered.inputs(item) for study in studies for item in study.items}
-    made = [_make(item, inputs[item.name], gathered, folder) for study in studies for item in study.items]
+    made = {item.name: _make(item, inputs[item.name], gathered) for study in studies for item in study.items}
     claims = [claim for study in studies for claim in study.claims]
     conditions = by_condition(gathered.demanded())
     overall = [found for found in (*verdict(conditions, claims), *regime(conditions)) if not found.rows.is_empty()]
-    everything = [*overall, *(found for one in made for found in one.tables), _every_world(made, inputs)]
-    for found in everything:
-        buffer = io.BytesIO()
-        found.rows.write_csv(buffer)
-        _write_file(folder / TABLES / f"{found.name}.csv", buffer.getvalue())
-    content = json.dumps(_json(gathered, made, everything), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-    _write_file(folder / JSON, content.encode())
-    for name, page in study_pages(studies, gathered, made, overall).items():
-        _write_file(folder / name, page.encode())
-    return made
+    tables = [*overall, *(found for one in made.values() for found in one.tables), _every_world(inputs)]
+    files = {f"{TABLES}/{found.name}.csv": table_csv(found) for found in tables}
+    page = Page(
+        " · ".join(study.title for study in studies),
+        _lead(gathered),
+        [
+            *(table_section(found) for found in overall if found.shown),
+            *(section for study in studies for section in _sections(study, made)),
+        ],
+        [f"Left out: {escape_markdown(fault)}" for fault in gathered.faults],
+        conditions,
+        gathered.runs,
+    )
+    write_answer(folder, Answer(NAME, page, _json(gathered, made.values()), tables, files))
+    return folder / f"{NAME}.html"
 
 
-def _write_file(path: Path, content: bytes) -> None:
-    write_atomically(path, lambda file: file.write(content))
+@dataclass(frozen=True)
+class BuiltItem:
+    """An item as it was made.
+
+    Attributes:
+        item: what it is.
+        worlds: that it was made of: a row for each condition.
+        parts: its figures and tables, in order.
+    """
+
+    item: Item
+    worlds: ResultTable | None
+    parts: tuple[FigureFile | ResultTable, ...]
+
+    @property
+    def tables(self) -> list[ResultTable]:
+        """Its tables."""
+        return [part for part in self.parts if isinstance(part, ResultTable)]
+
+    def section(self) -> Section:
+        """Its part of the page."""
+        shown = [part for part in self.parts if isinstance(part, FigureFile) or (part.shown and part.rows.height)]
+        folded = [] if self.worlds is None else [Folded(self.worlds)]
+        return Section(
+            self.item.title, [self.item.says, *(shown or [NOTHING]), *folded], self.item.name, self.item.name
+        )
 
 
-def _make(item: Item, inputs: ItemInputs, gathered: Gathered, folder: Path) -> BuiltItem:
-    parts: list[FigureFile | ResultTable] = []
-    for part in item.make(inputs):
-        if isinstance(part, NamedFigure):
-            parts.append(write_figure(folder, item.title, part, f"{FIGURES}/{part.name}.svg"))
-        else:
-            parts.append(part)
+def _lead(gathered: Gathered) -> str:
+    made = f", from records of version {versions(gathered.runs)}" if gathered.runs else ""
+    return (
+        f"With fidelity {gathered.request.fidelity}, unless an item says otherwise{made}. Intervals are 95 %, over "
+        "worlds, and shown from five worlds on unless a table says otherwise."
+    )
+
+
+def _sections(study: Study, made: Mapping[str, BuiltItem]) -> list[Section]:
+    expected = [f"Expected: {study.expectation}"] if study.expectation else []
+    return [Section(study.title, [study.question, *expected]), *(made[item.name].section() for item in study.items)]
+
+
+def _make(item: Item, inputs: ItemInputs, gathered: Gathered) -> BuiltItem:
+    parts = (
+        drawn_file(part, f"{FIGURES}/{part.name}.svg") if isinstance(part, NamedFigure) else part
+        for part in item.make(inputs)
+    )
     return BuiltItem(item, _worlds_table(item, inputs, gathered), tuple(parts))
 
 
@@ -103,16 +134,16 @@ def _worlds_row(label: str, worlds: Sequence[WorldRecord], asked: int) -> Mappin
     }
 
 
-def _every_world(made: Sequence[BuiltItem], inputs: Mapping[str, ItemInputs]) -> ResultTable:
+def _every_world(inputs: Mapping[str, ItemInputs]) -> ResultTable:
     """Every world of every condition once, for `hedon compare` and `hedon power`.
 
     A label that means one thing in one item and another thing in another item is preceded by the item's name.
     """
     found: dict[str, list[WorldRecord]] = {}
-    for one in made:
-        for label, worlds in inputs[one.item.name].worlds.items():
+    for item, own in inputs.items():
+        for label, worlds in own.worlds.items():
             same = _alike(found.get(label, worlds), worlds)
-            found[label if same else f"{one.item.name}: {label}"] = list(worlds)
+            found[label if same else f"{item}: {label}"] = list(worlds)
     rows = [
         {CONDITION: label, "steps": world.end_step, **world_row([world])}
         for label, worlds in found.items()
@@ -126,29 +157,23 @@ def _alike(worlds: Sequence[WorldRecord], others: Sequence[WorldRecord]) -> bool
     return [(w.condition, w.seed, w.end_step) for w in worlds] == [(w.condition, w.seed, w.end_step) for w in others]
 
 
-def _json(gathered: Gathered, made: Sequence[BuiltItem], tables: Sequence[ResultTable]) -> dict[str, Any]:
+def _json(gathered: Gathered, made: Iterable[BuiltItem]) -> dict[str, Any]:
     request = gathered.request
-    return plain(
-        {
-            "fidelity": request.fidelity,
-            "items": [
-                {
-                    "name": one.item.name,
-                    "title": one.item.title,
-                    "asked": asdict(request.scale(one.item)),
-                    "scale": asdict(one.item.scale),
-                    "worlds": one.worlds.rows.to_dicts() if one.worlds is not None else [],
-                    "figures": [part.path for part in one.parts if isinstance(part, FigureFile)],
-                    "tables": [found.name for found in one.tables],
-                }
-                for one in made
-            ],
-            "runs": [{"folder": run.path.name, "manifest": asdict(run.manifest)} for run in gathered.runs],
-            "unreadable": list(gathered.faults),
-            FACTORS: [CONDITION],
-            "tables": {
-                found.name: {"title": found.title, "note": found.note, "rows": found.rows.to_dicts()}
-                for found in tables
-            },
-        }
-    )
+    return {
+        "fidelity": request.fidelity,
+        "items": [
+            {
+                "name": one.item.name,
+                "title": one.item.title,
+                "asked": asdict(request.scale(one.item)),
+                "scale": asdict(one.item.scale),
+                "worlds": one.worlds.rows.to_dicts() if one.worlds is not None else [],
+                "figures": [part.path for part in one.parts if isinstance(part, FigureFile)],
+                "tables": [found.name for found in one.tables],
+            }
+            for one in made
+        ],
+        "runs": [{"folder": run.path.name, "manifest": asdict(run.manifest)} for run in gathered.runs],
+        "unreadable": list(gathered.faults),
+        FACTORS: [CONDITION],
+    }

@@ -1,5 +1,6 @@
 """The cells of a table: the same on a terminal, in Markdown and in HTML."""
 
+import io
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -36,6 +37,18 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
     shown = [[_cell(row, c, merged) for c in names] for row in rows.iter_rows(named=True)]
     filled = [i for i in range(len(names)) if any(row[i] for row in shown)]
     return [headers[i] for i in filled], [[row[i] for i in filled] for row in shown]
+
+
+def table_json(table: ResultTable) -> dict[str, Any]:
+    """A table as JSON files hold it."""
+    return {"title": table.title, "note": table.note, "rows": table.rows.to_dicts()}
+
+
+def table_csv(table: ResultTable) -> str:
+    """A table as CSV."""
+    buffer = io.BytesIO()
+    table.rows.write_csv(buffer)
+    return buffer.getvalue().decode()
 
 
 def _with_neutral_folded(rows: pl.DataFrame) -> pl.DataFrame:

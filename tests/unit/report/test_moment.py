@@ -12,7 +12,7 @@ from hedon.analysis.world.record import WorldRecord
 from hedon.cli.main import app
 from hedon.record.reader import open_run
 from hedon.report.analysis import analyze
-from hedon.report.page import narrow_intervals
+from hedon.report.run import narrow_intervals
 
 
 def test_a_killed_run_says_that_its_tables_are_of_two_moments(tmp_path: Path) -> None:

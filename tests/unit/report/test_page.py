@@ -21,11 +21,12 @@ from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 from hedon.report.analysis import Analysis, analyze
 from hedon.report.figure import FIGURES
-from hedon.report.page import FigureFile, report_pages
-from hedon.report.run import write_report
+from hedon.report.page import FigureFile, html_page, markdown_page
+from hedon.report.run import report_page, write_report
 
 # Both give the same name to their pictures, and hold what means something in Markdown or in HTML.
 FOLDERS = ["a|b *c* <i>d `e` [f](g) &lt; #", "_a_ ~~b~~ \\| $c$\n# <i>d e f g lt"]
+NAME = "baseline (corrected)"
 CONDITION = "<b>mush & room</b> | *x*"
 VOID = {"meta", "img", "br", "hr"}
 
@@ -136,11 +137,12 @@ def test_names_mean_nothing_in_markdown_or_html(report: Path) -> None:
 
 def test_the_same_records_give_the_same_page(analysis: Analysis) -> None:
     figures = [draw_regimes(analysis.tables["regime_time"].rows) for _ in range(2)]
-    first, second = (FigureFile("baseline (corrected)", "What?", "a.png", svg_bytes(figure)) for figure in figures)
+    first, second = (FigureFile("What?", "a.svg", svg_bytes(figure)) for figure in figures)
     assert first == second
     assert first.svg.startswith(b"<?xml")
     again = analyze(analysis.runs)
-    assert report_pages(analysis, [first]) == report_pages(again, [second])
+    one, other = report_page(analysis, {NAME: [first]}), report_page(again, {NAME: [second]})
+    assert (html_page(one), markdown_page(one)) == (html_page(other), markdown_page(other))
 
 
 def test_changed_settings_and_damaged_files_are_shown(tmp_path: Path) -> None:

@@ -1,15 +1,17 @@
 """What a study's author writes in Markdown is shown as such, and HTML in it stays text."""
 
-from jinja2 import Environment
+from hedon.report.page import Page, Section, html_page, markdown_page
 
-from hedon.report.page import _html_prose
+TEXT = "Does `food` *matter*? <script>alert(1)</script> & [here](https://x.org) [x](javascript:alert(1))"
 
 
 def test_markdown_becomes_html_and_html_stays_text():
-    page = Environment(autoescape=True).from_string("{{ text }}")
-    shown = page.render(text=_html_prose("Does `food` *matter*? <script>alert(1)</script> & [here](https://x.org)"))
-    assert "<code>food</code> <em>matter</em>" in shown
-    assert '<a href="https://x.org">here</a>' in shown
-    assert "&lt;script&gt;" in shown
+    page = Page("A & B", TEXT, [Section("<i>", [TEXT, (TEXT, "second")])], [TEXT])
+    shown = html_page(page)
+    assert shown.count("<code>food</code> <em>matter</em>") == 4, "lead, caution, paragraph, list"
+    assert shown.count('<a href="https://x.org">here</a>') == 4
+    assert shown.count("&lt;script&gt;") == 4
     assert "<script>" not in shown
-    assert "href=" not in _html_prose("[x](javascript:alert(1))")
+    assert 'href="javascript' not in shown
+    assert "<h2>&lt;i&gt;</h2>" in shown
+    assert markdown_page(page).count(TEXT) == 4

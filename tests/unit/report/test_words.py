@@ -89,7 +89,7 @@ def test_the_report_begins_with_the_answer_and_its_picture(tmp_path: Path, analy
     for name, line in zip(("w_normal", "w_action"), said, strict=True):
         assert f"{rows.filter(pl.col('weight') == name)['mean'][0]:+z.2f}" in line
     page, text = (files[name].read_text(encoding="utf-8") for name in ("report.html", "report.md"))
-    assert re.search(r"what evolved\?</h2>\s*<ul class=\"answers\"><li>Among the agents", page)
+    assert re.search(r"what evolved\?</h2>\s*<ul><li>Among the agents", page)
     order = [
         text.index(part)
         for part in ("- Among the agents alive at the end", "figures/history.svg", "figures/weights.svg", "## Tables")
