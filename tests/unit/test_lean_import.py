@@ -26,3 +26,10 @@ def test_a_world_in_memory_loads_numpy_alone() -> None:
     )
     assert alone == {"hedon", "lazy_loader"}
     assert all_of_it == {"hedon", "lazy_loader", "numpy"}
+
+
+def test_studies_are_listed_without_loading_what_draws() -> None:
+    program = "import sys; from hedon.study.catalogue import installed; installed(); print('matplotlib' in sys.modules)"
+    assert (
+        subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "False\n"
+    )

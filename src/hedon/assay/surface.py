@@ -7,11 +7,14 @@ means of each world, so that worlds may differ, and are placed so that the mean 
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from scipy.interpolate import BSpline
+from lazy_loader import load
 
 from hedon.assay.resample import Estimate, Floats, Ints, bounded, within, world_draws, world_interval
+
+interpolate: Any = load("scipy.interpolate", suppress_warning=True)  # takes a tenth of a second to load
 
 INTERVALS = 4
 """Pieces of the spline along each gene."""
@@ -187,7 +190,7 @@ def _basis(points: Floats, knots: Floats, slope: int | None = None) -> Floats:
     bases = []
     for gene in range(2):
         functions = np.eye(len(knots[gene]) - _DEGREE - 1)
-        bases.append(BSpline(knots[gene], functions, _DEGREE)(points[:, gene], nu=int(slope == gene)))
+        bases.append(interpolate.BSpline(knots[gene], functions, _DEGREE)(points[:, gene], nu=int(slope == gene)))
     return (bases[0][:, :, None] * bases[1][:, None, :]).reshape(len(points), -1)
 
 

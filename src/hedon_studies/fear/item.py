@@ -9,9 +9,10 @@ from functools import partial
 
 import polars as pl
 
+import hedon.figure
 from hedon.analysis import REACH, ResultTable, company, death_rates, history, make_table, species_loss
 from hedon.config import hunters
-from hedon.figure import SMOOTH, NamedFigure, draw_causes, draw_company, draw_message, draw_numbers
+from hedon.figure import NamedFigure
 from hedon.study import Condition, Item, ItemInputs, Scale, missing, present, sentences, stack, world_indices
 from hedon_studies.kanagawa_doya_2024.drift import make_drift
 from hedon_studies.kanagawa_doya_2024.evolved_weight import draw_last
@@ -70,7 +71,7 @@ def _numbers(inputs: ItemInputs) -> Iterator[NamedFigure]:
     name, question = "sequel-numbers", "How many prey and predators live together?"
     worlds = present((MAIN, HUNTERS), inputs)
     if len(worlds) < 2:
-        yield NamedFigure(name, question, draw_message("no worlds yet"), missing((MAIN, HUNTERS), inputs))
+        yield NamedFigure(name, question, hedon.figure.draw_message("no worlds yet"), missing((MAIN, HUNTERS), inputs))
         return
     indices = world_indices(worlds.values())
     histories = {label: history(stack(group, "population", indices), ()) for label, group in worlds.items()}
@@ -78,19 +79,19 @@ def _numbers(inputs: ItemInputs) -> Iterator[NamedFigure]:
         "Left, thin: one world; thick: the mean over worlds. Right: a line per world, by the color of its seed, to its "
         "end at the dot."
     )
-    yield NamedFigure(name, question, draw_numbers(histories), caption)
+    yield NamedFigure(name, question, hedon.figure.draw_numbers(histories), caption)
 
 
 def _deaths(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     name, question = "sequel-deaths", "What do prey and predators die of?"
     worlds = present((MAIN, HUNTERS), inputs)
     if not worlds:
-        yield NamedFigure(name, question, draw_message("no worlds yet"), missing((MAIN, HUNTERS), inputs))
+        yield NamedFigure(name, question, hedon.figure.draw_message("no worlds yet"), missing((MAIN, HUNTERS), inputs))
         return
     indices = world_indices(worlds.values())
     rates = {label: death_rates(stack(group, "population", indices)) for label, group in worlds.items()}
     caption = "Deaths per 10,000 steps lived, by cause: the mean over worlds, with its 95 % interval from five on."
-    yield NamedFigure(name, question, draw_causes(rates), caption)
+    yield NamedFigure(name, question, hedon.figure.draw_causes(rates), caption)
     rows = [
         {"species": label, "seed": world.seed, "deaths": world.agents["death_step"].count()}
         | {cause: (world.agents["cause"] == cause).sum() for cause in ("age_energy", "starved", "eaten")}
@@ -142,7 +143,8 @@ def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     name, question = "sequel-groups", "Do prey keep together, and away from predators?"
     frames, worlds = inputs.frames.get(MAIN.label, ()), inputs.worlds.get(MAIN.label, ())
     if not frames or len(frames) != len(worlds):
-        yield NamedFigure(name, question, draw_message("no positions were recorded"), missing((MAIN,), inputs))
+        drawn = hedon.figure.draw_message("no positions were recorded")
+        yield NamedFigure(name, question, drawn, missing((MAIN,), inputs))
         return
     found = {
         world.seed: company(world, rows, hunters(world.config, world.species))
@@ -150,9 +152,10 @@ def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     }
     caption = (
         f"A group is what hangs together by distances of centers of at most {REACH:g} u; the size is that of the group "
-        f"of a prey, itself included. Gray: as many prey placed evenly by chance. Means over {SMOOTH} frames."
+        "of a prey, itself included. Gray: as many prey placed evenly by chance. Means over "
+        f"{hedon.figure.SMOOTH} frames."
     )
-    yield NamedFigure(name, question, draw_company(found, PREY, PREDATOR), caption)
+    yield NamedFigure(name, question, hedon.figure.draw_company(found, PREY, PREDATOR), caption)
     means = [
         {"seed": seed, **rows.select(pl.exclude("step").mean()).row(0, named=True)} for seed, rows in found.items()
     ]

@@ -7,8 +7,9 @@ bounds says that it does not matter; one that reaches beyond leaves it open.
 
 from collections.abc import Iterator
 
+import hedon.figure
 from hedon.analysis import ResultTable, history, make_table
-from hedon.figure import NamedFigure, draw_courses
+from hedon.figure import NamedFigure
 from hedon.measure import RESPONSES
 from hedon.study import (
     Condition,
@@ -56,7 +57,7 @@ def make_acting(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
             for label, found in worlds.items()
         }
         question = "Do worlds fare alike, whichever weights their agents act by?"
-        yield NamedFigure("acting_courses", question, draw_courses(courses, _PANELS), _DRAWN)
+        yield NamedFigure("acting_courses", question, hedon.figure.draw_courses(courses, _PANELS), _DRAWN)
     yield make_table(
         "acting",
         "Acting by weights of 32 and of 16 bits",

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+import hedon.figure
 from hedon.analysis import LAST_AGENTS, SEED, ResultTable, WorldDrift, drift_tests, make_table, standard_drift
-from hedon.figure import NamedFigure, draw_scores
+from hedon.figure import NamedFigure
 from hedon.statistic import FOR_INTERVAL
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, present, sentences
 from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, POISON, POOR, SIZES
@@ -56,7 +57,8 @@ def make_drift(
     question = "Which weights went further, or more in one direction, than drift?"
     if groups[ALL]:
         means = {row["weight"]: row for row in tests[ALL] if row["test"] == "direction"}
-        yield NamedFigure(name, question, draw_scores(_points(scores), {**rewards, **MARKER}, means), _DRAWN)
+        drawn = hedon.figure.draw_scores(_points(scores), {**rewards, **MARKER}, means)
+        yield NamedFigure(name, question, drawn, _DRAWN)
     yield make_table(
         f"{name}_all", "Weights against drift, all conditions", tests.pop(ALL), sentences(_TESTS, _SHARED, note)
     )

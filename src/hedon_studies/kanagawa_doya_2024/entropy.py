@@ -21,8 +21,8 @@ from hedon.study import (
     world_indices,
     world_rows,
 )
+from hedon_studies.kanagawa_doya_2024 import figure
 from hedon_studies.kanagawa_doya_2024.analysis.appetite import WINDOWS, appetite, half_way_weight
-from hedon_studies.kanagawa_doya_2024.figure.appetite import draw_appetite
 
 WITH, WITHOUT = "entropy 0.001", "entropy 0"
 CONDITIONS = (
@@ -63,7 +63,7 @@ def make_entropy(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     if worlds:
         courses = {label: _course(found) for label, found in worlds.items()}
         question = "How large must the weight of food be before agents eat well?"
-        yield NamedFigure("entropy_appetite", question, draw_appetite(bins, courses), _DRAWN)
+        yield NamedFigure("entropy_appetite", question, figure.draw_appetite(bins, courses), _DRAWN)
     yield make_table(
         "entropy",
         "With and without the bonus for entropy",

@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
+import hedon.figure
 from hedon.analysis import LAST_AGENTS, drift_genes, last_agents
-from hedon.figure import NamedFigure, WeightGroup, against_action, draw_message, draw_weight_groups
+from hedon.figure import NamedFigure
 from hedon.study import Condition, Item, ItemInputs, describe, missing, present, sentences, stack, world_indices
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, PLACES, POISON, POOR, SIZES
 
@@ -13,21 +14,20 @@ _READ = (
     "distributed by drift alone. Worlds that died out are shown; the paper replaced them."
 )
 
-_AGAINST_ACTION = tuple(against_action(("w_normal",)))
-
 
 def draw_last(
     name: str, question: str, conditions: Sequence[Condition], panels: Sequence[tuple[str, str]], inputs: ItemInputs
 ) -> Iterator[NamedFigure]:
-    """The weights of those born last in the worlds of some conditions: the panels of each condition side by side."""
+    """The weights of those born last in the worlds of some conditions, by default food against action, side by side."""
+    panels = panels or hedon.figure.against_action(("w_normal",))
     worlds = present(conditions, inputs)
     caption = sentences(_READ, missing(conditions, inputs))
     if not worlds:
-        yield NamedFigure(name, question, draw_message("no worlds yet"), caption)
+        yield NamedFigure(name, question, hedon.figure.draw_message("no worlds yet"), caption)
         return
     indices = world_indices(worlds.values())
     groups = [
-        WeightGroup(
+        hedon.figure.WeightGroup(
             last_agents(stack(group, "agents", indices)),
             panels,
             label,
@@ -36,7 +36,7 @@ def draw_last(
         )
         for label, group in worlds.items()
     ]
-    yield NamedFigure(name, question, draw_weight_groups(groups), caption)
+    yield NamedFigure(name, question, hedon.figure.draw_weight_groups(groups), caption)
 
 
 def _item(
@@ -45,7 +45,7 @@ def _item(
     paper: str,
     question: str,
     *conditions: Condition,
-    panels: Sequence[tuple[str, str]] = _AGAINST_ACTION,
+    panels: Sequence[tuple[str, str]] = (),
 ) -> Item:
     return Item(name, title, paper, partial(draw_last, name, question, conditions, panels), conditions, PAPER_SCALE)
 

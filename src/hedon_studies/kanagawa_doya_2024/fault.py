@@ -8,7 +8,7 @@ from hedon.figure import NamedFigure
 from hedon.measure import RESPONSES, Measure
 from hedon.statistic import Cell, FactorialFit, Factors, all_effects, fit_factorial
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, sentences, shown_interval, world_rows
-from hedon_studies.kanagawa_doya_2024.figure.factorial import draw_cells, draw_effects
+from hedon_studies.kanagawa_doya_2024 import figure
 
 FACTORS = {
     "growth": "food.normal.growth_rate=1.0",
@@ -93,11 +93,11 @@ def make_faults(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     told = set(effects.rows["effect"]) if effects.rows.height else set()
     if rows:
         there = [label for label in CELLS if inputs.worlds.get(label)]
-        cells = draw_cells(worlds.rows, there, _SHOWN)
+        cells = figure.draw_cells(worlds.rows, there, _SHOWN)
         yield NamedFigure("fault_cells", "What do the faults of the released code do?", cells, _CELLS_DRAWN)
     if told:
         names = [name for name in map(effect_name, all_effects(len(FACTORS))) if name in told]
-        drawn = draw_effects(effects.rows, names, _SHOWN)
+        drawn = figure.draw_effects(effects.rows, names, _SHOWN)
         yield NamedFigure("fault_effects", "What does each do, alone and together?", drawn, _DRAWN)
     yield effects
     yield make_table(

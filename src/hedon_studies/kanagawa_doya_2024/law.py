@@ -4,10 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+import hedon.figure
 from hedon.analysis import SEED, mutation_law
 from hedon.config import ONLY, Config, gene_of
 from hedon.demography import birth_rate, expected_lifetime, reproduction_number
-from hedon.figure import NamedFigure, draw_birth, draw_hazard, draw_walk_ends, draw_walks
+from hedon.figure import NamedFigure
 from hedon.study import Item, ItemInputs, sentences
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE
 
@@ -36,7 +37,7 @@ def _hazard(inputs: ItemInputs) -> Iterator[NamedFigure]:
         f"At constant energy a life lasts {poor:,.0f} steps on average without any, and {rich:,.0f} with as much as an "
         "agent can hold."
     )
-    yield NamedFigure("hazard", "How do energy and age decide who dies?", draw_hazard(own.hazard), caption)
+    yield NamedFigure("hazard", "How do energy and age decide who dies?", hedon.figure.draw_hazard(own.hazard), caption)
 
 
 def _birth(inputs: ItemInputs) -> Iterator[NamedFigure]:
@@ -46,7 +47,7 @@ def _birth(inputs: ItemInputs) -> Iterator[NamedFigure]:
         f"Even an agent that stays at zero energy tries {children:.2f} children in its life; a lineage keeps its size "
         "at 1, if all of them find a place."
     )
-    yield NamedFigure("birth", "How does energy decide who has children?", draw_birth(own), caption)
+    yield NamedFigure("birth", "How does energy decide who has children?", hedon.figure.draw_birth(own), caption)
 
 
 def _walk(inputs: ItemInputs) -> Iterator[NamedFigure]:
@@ -60,8 +61,8 @@ def _walk(inputs: ItemInputs) -> Iterator[NamedFigure]:
             "arena without energy tries in a window."
         )
     for name, question, draw, caption in (
-        ("walk", "Where do mutations alone carry weights that nothing selects?", draw_walk_ends, _ENDS),
-        ("walk_lines", "How does a weight get there?", draw_walks, _LINES),
+        ("walk", "Where do mutations alone carry weights that nothing selects?", hedon.figure.draw_walk_ends, _ENDS),
+        ("walk_lines", "How does a weight get there?", hedon.figure.draw_walks, _LINES),
     ):
         figure = draw(law, births, np.random.default_rng(SEED))
         yield NamedFigure(name, question, figure, sentences(caption, noise))

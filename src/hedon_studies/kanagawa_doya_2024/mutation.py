@@ -7,8 +7,8 @@ from hedon.analysis import ResultTable, generator, make_table
 from hedon.figure import NamedFigure
 from hedon.statistic import FOR_INTERVAL
 from hedon.study import Condition, ItemInputs, sentences
+from hedon_studies.kanagawa_doya_2024 import figure
 from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, Drift, compare, gene_drift
-from hedon_studies.kanagawa_doya_2024.figure.prediction import draw_predictions
 
 GENES = {"w_normal": "weight of food", "w_action": "weight of action", "neutral_1": "neutral marker"}
 _ALL = "all genes"
@@ -55,7 +55,7 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
     """The figure and the two tables of a study."""
     shown = {label: [drift for _, drift in found] for label, found in drifts.items()}
     question = "Do weights go where mutations push them?"
-    yield NamedFigure(f"{name}_prediction", question, draw_predictions(shown, GENES), _DRAWN)
+    yield NamedFigure(f"{name}_prediction", question, figure.draw_predictions(shown, GENES), _DRAWN)
     yield make_table(
         f"{name}_prediction",
         "Mutations: predicted and seen",

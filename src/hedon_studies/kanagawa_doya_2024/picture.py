@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 
-from hedon.figure import NamedFigure, draw_body, draw_world, meal_colors, telling_agent
+import hedon.figure
+from hedon.figure import NamedFigure
 from hedon.record import Snapshot
 from hedon.study import Item, ItemInputs, Scale
+from hedon_studies.kanagawa_doya_2024 import figure
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PLACES, POISON, POOR, SIZES
-from hedon_studies.kanagawa_doya_2024.figure.arena import ArenaPanel, draw_arenas
 
 _FOODS = (*PLACES[1:], POOR, POISON)
 _ONE_WORLD = Scale((1,), 10_240)
@@ -19,24 +20,24 @@ _BODY = (
 
 def _body(inputs: ItemInputs) -> Iterator[NamedFigure]:
     question = "What does an agent sense, and how does it move and eat?"
-    yield NamedFigure("body", question, draw_body(BASELINE.config(inputs.fidelity)), _BODY)
+    yield NamedFigure("body", question, hedon.figure.draw_body(BASELINE.config(inputs.fidelity)), _BODY)
 
 
 def _arena(inputs: ItemInputs) -> Iterator[NamedFigure]:
     snapshot = inputs.snapshots.get(BASELINE.label)
     if snapshot is None:
         return
-    colors = meal_colors(BASELINE.config(inputs.fidelity))
-    agent = telling_agent(snapshot)
+    colors = hedon.figure.meal_colors(BASELINE.config(inputs.fidelity))
+    agent = hedon.figure.telling_agent(snapshot)
     rays_of = () if agent is None else (agent,)
-    figure = draw_world(snapshot, colors, rays_of)
-    yield NamedFigure("arena", "What does a world look like?", figure, f"World of {_when(snapshot)}.")
+    drawn = hedon.figure.draw_world(snapshot, colors, rays_of)
+    yield NamedFigure("arena", "What does a world look like?", drawn, f"World of {_when(snapshot)}.")
 
 
 def _arenas(inputs: ItemInputs) -> Iterator[NamedFigure]:
     rows = [
         [
-            ArenaPanel(condition.label, condition.config(inputs.fidelity), inputs.snapshots.get(condition.label))
+            figure.ArenaPanel(condition.label, condition.config(inputs.fidelity), inputs.snapshots.get(condition.label))
             for condition in conditions
         ]
         for conditions in (SIZES, _FOODS)
@@ -48,7 +49,8 @@ def _arenas(inputs: ItemInputs) -> Iterator[NamedFigure]:
     missing = [panel.label for row in rows for panel in row if panel.snapshot is None]
     if missing:
         caption += f" Drawn from the settings alone, since there was no run: {', '.join(missing)}."
-    yield NamedFigure("arenas", "What arenas are there, and where does food grow in each?", draw_arenas(rows), caption)
+    question = "What arenas are there, and where does food grow in each?"
+    yield NamedFigure("arenas", question, figure.draw_arenas(rows), caption)
 
 
 def _when(snapshot: Snapshot) -> str:

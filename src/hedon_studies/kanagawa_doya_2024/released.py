@@ -5,13 +5,14 @@ from typing import Any
 
 import polars as pl
 
+import hedon.figure
 from hedon.analysis import ResultTable, WorldRecord, drift_genes, last_agents, make_table
-from hedon.figure import NamedFigure, draw_weights
+from hedon.figure import NamedFigure
 from hedon.measure import RESPONSES
 from hedon.statistic import share_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, shown_interval, world_rows
+from hedon_studies.kanagawa_doya_2024 import figure
 from hedon_studies.kanagawa_doya_2024.analysis.fate import EXTINCT, FATES, HEADING, STANDING, Fate, fate
-from hedon_studies.kanagawa_doya_2024.figure.fate import draw_fates
 from hedon_studies.kanagawa_doya_2024.mutation import Drifts, condition_drifts, drift_parts
 from hedon_studies.kanagawa_doya_2024.paper import EXTINCTION, PAPER
 
@@ -50,7 +51,7 @@ def make_released(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     drifts = condition_drifts(inputs, CONDITIONS)
     if worlds:
         yield NamedFigure(
-            "released_fate", "Which worlds last, and what evolves there?", draw_fates(worlds, fates), _DRAWN
+            "released_fate", "Which worlds last, and what evolves there?", figure.draw_fates(worlds, fates), _DRAWN
         )
         yield from _weight_figures(worlds, fates)
     yield make_table(
@@ -75,7 +76,7 @@ def _weight_figures(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Ite
         last = {i: last_agents(worlds[i].agents).with_columns(world=pl.lit(i, pl.Int32)) for i in shown[name]}
         drift = drift_genes([worlds[i] for i in last], list(last.values()))
         yield NamedFigure(
-            name, question, draw_weights(pl.concat(last.values()), worlds[0].reward_names, drift), _WEIGHTS
+            name, question, hedon.figure.draw_weights(pl.concat(last.values()), worlds[0].reward_names, drift), _WEIGHTS
         )
 
 

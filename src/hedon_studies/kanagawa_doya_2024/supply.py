@@ -14,8 +14,8 @@ from hedon.config import Config
 from hedon.figure import NamedFigure
 from hedon.measure import MEASURES, Measure
 from hedon.study import Condition, Item, ItemInputs, Scale, missing_note, sentences, shown_interval, world_rows
+from hedon_studies.kanagawa_doya_2024 import figure
 from hedon_studies.kanagawa_doya_2024.fault import FACTORS
-from hedon_studies.kanagawa_doya_2024.figure.supply import Eater, draw_supply
 from hedon_studies.kanagawa_doya_2024.paper import PAPER
 
 PRESETS = ("small", "baseline", "centered")
@@ -52,7 +52,8 @@ def make_supply(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     rows = world_rows(inputs, CONDITIONS, _ASKED)
     if rows:
         question = "Could agents eat what the paper reports of the food that grows?"
-        yield NamedFigure("supply", question, draw_supply(_eaters(rows), RULES, _rates(), _supplies(inputs)), _DRAWN)
+        drawn = figure.draw_supply(_eaters(rows), RULES, _rates(), _supplies(inputs))
+        yield NamedFigure("supply", question, drawn, _DRAWN)
     found = [
         _condition_row(condition, inputs, mine)
         for condition in CONDITIONS
@@ -75,13 +76,13 @@ def growth(config: Config) -> float:
     return sum(kind.growth_rate for kind in config.food.values())
 
 
-def _eaters(rows: list[dict[str, Any]]) -> list[Eater]:
+def _eaters(rows: list[dict[str, Any]]) -> "list[figure.Eater]":
     """The worlds that eat, as the figure shows them."""
     eaters = []
     for row in rows:
         preset, rule = row["condition"].split(", ")
         if row["alive_mean"] and row["eaten"]:
-            eaters.append(Eater(preset, rule, row["alive_mean"], row["eaten"]))
+            eaters.append(figure.Eater(preset, rule, row["alive_mean"], row["eaten"]))
     return eaters
 
 

@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 
+import hedon.figure
 from hedon.analysis import drift_bands
-from hedon.figure import HistoryRow, NamedFigure, draw_histories, draw_message, meal_colors
+from hedon.figure import NamedFigure
 from hedon.study import Condition, Item, ItemInputs, describe, missing, present, sentences, stack, world_indices
 from hedon_studies.kanagawa_doya_2024.condition import BASELINE, PAPER_SCALE, POISON, POOR, SIZES
 
@@ -22,11 +23,11 @@ def draw_courses(
     worlds = present(conditions, inputs)
     caption = sentences(_READ, missing(conditions, inputs))
     if not worlds:
-        yield NamedFigure(name, question, draw_message("no worlds yet"), caption)
+        yield NamedFigure(name, question, hedon.figure.draw_message("no worlds yet"), caption)
         return
     indices = world_indices(worlds.values())
     rows = [
-        HistoryRow(
+        hedon.figure.HistoryRow(
             stack(group, "population", indices),
             label,
             ", ".join(describe(group)),
@@ -36,8 +37,9 @@ def draw_courses(
         for label, group in worlds.items()
     ]
     first = next(iter(worlds.values()))[0]
-    colors = meal_colors(first.config, first.prey)
-    yield NamedFigure(name, question, draw_histories(rows, first.reward_names, first.neutral_names, colors), caption)
+    colors = hedon.figure.meal_colors(first.config, first.prey)
+    drawn = hedon.figure.draw_histories(rows, first.reward_names, first.neutral_names, colors)
+    yield NamedFigure(name, question, drawn, caption)
 
 
 def _item(name: str, title: str, paper: str, question: str, *conditions: Condition) -> Item:

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+import hedon.figure
 from hedon.analysis import ResultTable, WorldRecord, last_mean, make_table, mean_lifetime
-from hedon.figure import BLUE, ORANGE, NamedFigure, draw_message, new_figure, styled
+from hedon.figure import NamedFigure
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
 from hedon_studies.rule import Test, mean_test, slope_test, verdict_table
 
@@ -78,7 +79,7 @@ def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     ]
     if not rows:
         note = missing(CONDITIONS.values(), inputs)
-        yield NamedFigure("lifespan-and-plasticity", question, draw_message("no worlds yet"), note)
+        yield NamedFigure("lifespan-and-plasticity", question, hedon.figure.draw_message("no worlds yet"), note)
         return
     tests = named_tests(rows)
     note = missing_note(inputs, tuple(CONDITIONS.values()), SCALE)
@@ -88,10 +89,10 @@ def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
 
 
 def _figure(question: str, rows: Sequence[dict[str, Any]], slope: Test) -> NamedFigure:
-    with styled():
-        figure = new_figure(5.6, 3.6)
+    with hedon.figure.styled():
+        figure = hedon.figure.new_figure(5.6, 3.6)
         axes = figure.subplots()
-        for world, color in ((CONSTANT, BLUE), (CHANGING, ORANGE)):
+        for world, color in ((CONSTANT, hedon.figure.BLUE), (CHANGING, hedon.figure.ORANGE)):
             mine = [row for row in rows if row["world"] == world and row["lifetime"] and row["rate"] is not None]
             for row in mine:
                 marker = "x" if row["died out"] else "o"

@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 from diptest import dipstat
 
+import hedon.assay
+import hedon.figure
 from hedon.analysis import ResultTable, WorldRecord, last_agents, last_mean, make_table
-from hedon.assay import Lines, by_gene, draw_frequency, estimate_frequency, frequency_tables, world_lines
-from hedon.figure import NamedFigure, draw_message
+from hedon.assay import Lines, by_gene, estimate_frequency, world_lines
+from hedon.figure import NamedFigure
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
 from hedon_studies.rule import Test, count_test, mean_test, verdict_table
 
@@ -69,14 +71,14 @@ def make_mixed(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     }
     if len(lines) < 2:
         note = missing(MIXTURES.values(), inputs)
-        yield NamedFigure("mating-strategies", question, draw_message("no worlds yet"), note)
+        yield NamedFigure("mating-strategies", question, hedon.figure.draw_message("no worlds yet"), note)
         return
     found = estimate_frequency(("foragers", "trackers"), lines)
     caption = "Dots: worlds that began with one share of foragers. Line: all of them together, with its interval."
-    yield NamedFigure("mating-strategies", question, draw_frequency(found), caption)
+    yield NamedFigure("mating-strategies", question, hedon.assay.draw_frequency(found), caption)
     note = missing_note(inputs, tuple(MIXTURES.values()), Scale(SEEDS, MIXED["steps"]))
     yield verdict_table("mating_verdict", invasion_tests(lines), note, NAMED)
-    yield from frequency_tables(found)
+    yield from hedon.assay.frequency_tables(found)
 
 
 def is_clustered(world: WorldRecord) -> bool | None:

@@ -1,1 +1,5 @@
 """Figures that only this study draws, one question per file."""
+
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -1,0 +1,9 @@
+from .appetite import draw_appetite as draw_appetite
+from .arena import ArenaPanel as ArenaPanel
+from .arena import draw_arenas as draw_arenas
+from .factorial import draw_cells as draw_cells
+from .factorial import draw_effects as draw_effects
+from .fate import draw_fates as draw_fates
+from .prediction import draw_predictions as draw_predictions
+from .supply import Eater as Eater
+from .supply import draw_supply as draw_supply
