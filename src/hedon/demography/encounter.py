@@ -2,8 +2,10 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import NDArray
 
 from hedon.config import Config
@@ -11,6 +13,8 @@ from hedon.config.schema.species import SpeciesConfig
 from hedon.demography.food_place import throw
 from hedon.demography.motion import unlearned_walk
 from hedon.demography.placement import is_within_walls
+
+spatial: Any = load("scipy.spatial", suppress_warning=True)  # takes a fifth of a second to load
 
 BINS = 16
 """Parts of the time since birth, in each of which a rate is a mean."""
@@ -50,9 +54,7 @@ def encounter_rates(
     if not len(start) or not sum(counts):
         return visits
     kind, sites = np.repeat(np.arange(len(places)), counts), np.vstack(places)
-    from scipy.spatial import KDTree  # takes a fifth of a second to load, and food that grows anywhere needs none
-
-    tree, reach = KDTree(sites), own.body.radius + config.world.food_radius
+    tree, reach = spatial.KDTree(sites), own.body.radius + config.world.food_radius
     left = np.full((len(start), len(sites)), -_PAUSE - 1)  # when an agent last touched a place that it had visited
     middle = np.exp(1j * math.radians(own.sensor.mouth_center))
     edge = math.cos(math.radians(own.sensor.mouth_spread)) if own.sensor.mouth_spread < 180 else -2.0
@@ -91,7 +93,5 @@ def gaps(config: Config, own: SpeciesConfig, scene: Floats) -> float:
         return 0.0
     wide = 2.0 * (own.body.radius + config.world.food_radius)
     mouth = wide * math.sin(math.radians(min(own.sensor.mouth_spread, 90.0)))
-    from scipy.spatial import KDTree
-
-    tree = KDTree(scene)
+    tree = spatial.KDTree(scene)
     return float(tree.count_neighbors(tree, wide) - tree.count_neighbors(tree, mouth)) / len(scene)

@@ -2,14 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from hedon.config import Config
 from hedon.config.schema.food import FoodConfig
 from hedon.demography.placement import is_within_walls
+
+spatial: Any = load("scipy.spatial", suppress_warning=True)  # takes a fifth of a second to load
 
 TRIES = 20_000
 """Places that the engine tries for each founder and each food of a new world (`world/population.h`)."""
@@ -74,7 +77,7 @@ def throw(
         places = draw(_BATCH)
         open_places = free(places)
         if len(placed):
-            open_places &= KDTree(placed).query(places)[0] >= reach
+            open_places &= spatial.KDTree(placed).query(places)[0] >= reach
         at = np.flatnonzero(open_places)
         near = np.hypot(*np.moveaxis(places[at, None] - places[at], 2, 0)) < reach
         taken = np.zeros(len(at), bool)
@@ -137,9 +140,9 @@ def _fill(config: Config, food: FoodConfig, steps: int, rng: np.random.Generator
     placed = np.empty((0, 2))
     for part in range(parts):
         grown = food.initial_count + food.growth_rate * steps * (part + 1) / parts
-        there = KDTree(placed) if len(placed) else None
+        there = spatial.KDTree(placed) if len(placed) else None
 
-        def free(places: Floats, there: KDTree | None = there) -> NDArray[np.bool_]:
+        def free(places: Floats, there: Any = there) -> NDArray[np.bool_]:
             clear = is_within_walls(config, radius, places)
             return clear if there is None else clear & (there.query(places)[0] >= reach)
 
@@ -164,7 +167,7 @@ def missing_at_start(config: Config, rng: np.random.Generator) -> str:
         def of(places: Floats) -> NDArray[np.bool_]:
             clear = is_within_walls(config, radius, places)
             for other in np.unique(radii):
-                clear &= KDTree(bodies[radii == other]).query(places)[0] >= radius + other
+                clear &= spatial.KDTree(bodies[radii == other]).query(places)[0] >= radius + other
             return clear
 
         return of

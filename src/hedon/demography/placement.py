@@ -1,12 +1,13 @@
 """How often does a newborn find a free place? Sampled, by throwing agents and places at random."""
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hedon.config import Config
-from hedon.config.schema.arena import outline, walls
+from hedon.config.schema.arena import ArenaConfig, outline, walls
 from hedon.config.schema.life import distance_sd
 
 SCENES = 12
@@ -45,8 +46,11 @@ def is_free(config: Config, radius: float, places: Floats, agents: Floats, foods
     free = is_within_walls(config, radius, places)
     for others, reach in ((agents, 2 * radius), (foods, radius + config.world.food_radius)):
         if len(others):
-            offset = places[:, None] - others[None]
-            free &= (np.einsum("nfi,nfi->nf", offset, offset) >= reach**2).all(axis=1)
+            apart, along_y = (np.subtract.outer(places[:, i], others[:, i]) for i in (0, 1))
+            apart *= apart
+            along_y *= along_y
+            apart += along_y
+            free &= apart.min(axis=1) >= reach**2
     return free
 
 
@@ -93,14 +97,21 @@ def is_within_walls(config: Config, radius: float, places: Floats) -> NDArray[np
     Returns:
         (n,).
     """
-    corners = np.array(outline(config.arena))
-    along = np.roll(corners, -1, axis=0) - corners
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
-    offset = places[:, None] - corners[None]
-    inward = offset[..., 0] * along[:, 1] - offset[..., 1] * along[:, 0]  # the inside lies to the right
-    free = (inward >= radius).all(axis=1)
-    for ax, ay, bx, by in walls(config.arena)[len(corners) :].astype(np.float64):
-        a, wall = np.array([ax, ay]), np.array([bx - ax, by - ay])
+    inward, offset, segments = _walls(config.arena)
+    gap = np.multiply.outer(places[:, 0], inward[0]) + np.multiply.outer(places[:, 1], inward[1]) - offset
+    free = gap.min(axis=1) >= radius
+    for a, wall in segments:
         share = np.clip((places - a) @ wall / max(wall @ wall, 1e-12), 0.0, 1.0)
         free &= np.linalg.norm(places - a - share[:, None] * wall, axis=1) >= radius
     return free
+
+
+@cache
+def _walls(arena: ArenaConfig) -> tuple[Floats, Floats, list[tuple[Floats, Floats]]]:
+    """The outer walls as half planes: normals (2, walls), offsets (walls,); the start and the span of inner walls."""
+    corners = np.array(outline(arena))
+    along = np.roll(corners, -1, axis=0) - corners
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    inward = np.array([along[:, 1], -along[:, 0]])  # the inside lies to the right
+    ends = walls(arena)[len(corners) :].astype(np.float64)
+    return inward, np.einsum("ni,in->n", corners, inward), [(each[:2], each[2:] - each[:2]) for each in ends]

@@ -94,10 +94,9 @@ def exact_share_interval(count: int, of: int, level: float = LEVEL) -> tuple[flo
     Returns:
         Lower and upper bound.
     """
-    from scipy import stats  # loads in half a second
-
-    found = stats.binomtest(count, of).proportion_ci(level, method="exact")
-    return float(found.low), float(found.high)
+    tail = 0.5 * (1.0 - level)
+    low = beta_quantile(tail, count, of - count + 1) if count else 0.0
+    return low, beta_quantile(1.0 - tail, count + 1, of - count) if count < of else 1.0
 
 
 def spread_interval(values: NDArray[np.float64], level: float = LEVEL) -> tuple[float, float, float]:

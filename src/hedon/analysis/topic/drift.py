@@ -48,9 +48,9 @@ def reversion_topic(conditions: Conditions) -> list[ResultTable]:
     for condition, worlds in conditions.items():
         known = zip(worlds, standard_courses(worlds), strict=True)
         courses = {world: course for world, course in known if course is not None}
-        for world, course in courses.items():
-            world_rows += [labels(world) | row for row in _rows([course], world.weight_names)]
-        found = _rows(list(courses.values()), worlds[0].weight_names)
+        each = {world: _rows([course], world.weight_names) for world, course in courses.items()}
+        world_rows += [labels(world) | row for world, own in each.items() for row in own]
+        found = next(iter(each.values())) if len(each) == 1 else _rows([*courses.values()], worlds[0].weight_names)
         neutral = worlds[0].neutral_names
         corrected = holm([float("nan") if row["weight"] in neutral else row["p"] for row in found])
         rows += [{"condition": condition} | row | {"p_holm": p} for row, p in zip(found, corrected, strict=True)]

@@ -6,15 +6,18 @@ them. The same number of agents placed evenly over the arena by chance tells wha
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import polars as pl
+from lazy_loader import load
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from hedon.analysis.world.record import WorldRecord, generator
+
+sparse: Any = load("scipy.sparse", suppress_warning=True)  # these take a fifth of a second to load
+csgraph: Any = load("scipy.sparse.csgraph", suppress_warning=True)
+spatial: Any = load("scipy.spatial", suppress_warning=True)
 
 REACH = 30.0
 """Distance of two centers within a group [u]: three radii of the paper's agents. Our choice: at 40 u even agents
@@ -31,9 +34,9 @@ def group_sizes(places: NDArray[np.float64], reach: float = REACH) -> NDArray[np
         reach: largest distance of two neighbors in a group [u].
     """
     count = len(places)
-    pairs = KDTree(places).query_pairs(reach, output_type="ndarray")
-    links = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-    member = connected_components(links, directed=False)[1]
+    pairs = spatial.KDTree(places).query_pairs(reach, output_type="ndarray")
+    links = sparse.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    member = csgraph.connected_components(links, directed=False)[1]
     return np.bincount(member)[member]
 
 
@@ -44,7 +47,7 @@ def nearest(places: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray
         places: of the agents [u], (agents, 2).
         others: of the others [u], (others, 2); at least one.
     """
-    return KDTree(others).query(places)[0]
+    return spatial.KDTree(others).query(places)[0]
 
 
 def company(world: WorldRecord, frames: pl.LazyFrame, hunters: Sequence[str]) -> pl.DataFrame:
