@@ -69,7 +69,7 @@ def public(tree: ast.Module | ast.ClassDef, path: str = "") -> Iterator[tuple[st
 def exported() -> dict[Path, set[str]]:
     """The names that public packages export, by the files that define them."""
     found: dict[Path, set[str]] = {}
-    for stub in SOURCE.rglob("__init__.pyi"):
+    for stub in (SOURCE / "hedon").rglob("__init__.pyi"):
         for module, name in EXPORT.findall(stub.read_text()):
             home = stub.parent.joinpath(*module.split(".")).with_suffix(".py")
             found.setdefault(home, set()).add(name)

@@ -13,7 +13,7 @@ from hedon.measure.summary import plain
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
 from hedon.report.earlier import earlier_names
-from hedon.report.page import FigureFile, Page, Section, html_page, markdown_page
+from hedon.report.page import FigureFile, Page, PageSection, html_page, markdown_page
 from hedon.report.table import table_json
 
 WORLDS, FACTORS = "world", "factors"
@@ -50,13 +50,13 @@ def simple_answer(
 ) -> Answer:
     """The answer to one question: figures, then a section for each table that is shown."""
     drawn = [drawn_file(figure) for figure in figures]
-    page = Page(title, lead, [Section("", drawn), *(table_section(each) for each in tables if each.shown)])
+    page = Page(title, lead, [PageSection("", drawn), *(table_section(each) for each in tables if each.shown)])
     return Answer(name, page, content, tables, files or {})
 
 
-def table_section(table: ResultTable) -> Section:
+def table_section(table: ResultTable) -> PageSection:
     """A section that holds a table."""
-    return Section(table.title, [table], table.name)
+    return PageSection(table.title, [table], table.name)
 
 
 def drawn_file(named: NamedFigure, path: str = "") -> FigureFile:

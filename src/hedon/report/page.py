@@ -60,7 +60,7 @@ Block = str | tuple[str, ...] | FigureFile | ResultTable | Folded
 
 
 @dataclass(frozen=True)
-class Section:
+class PageSection:
     """A part of a page.
 
     Attributes:
@@ -91,7 +91,7 @@ class Page:
 
     title: str
     lead: str
-    sections: Sequence[Section]
+    sections: Sequence[PageSection]
     cautions: Sequence[str] = ()
     conditions: Conditions = field(default_factory=dict)
     runs: Sequence[Run] = ()

@@ -29,7 +29,7 @@ from hedon.report.answer import Answer, drawn_file, replace_files
 from hedon.report.condition import condition_figures
 from hedon.report.figure import WORLD
 from hedon.report.markdown import escape_markdown
-from hedon.report.page import FigureFile, Page, Section, describe_worlds, versions
+from hedon.report.page import FigureFile, Page, PageSection, describe_worlds, versions
 from hedon.report.topic import TOPICS, Tell, tell_nobody
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.study.catalogue import reported_figures
@@ -94,17 +94,17 @@ def report_page(analysis: Analysis, figures: Mapping[str, Sequence[FigureFile]])
         drawn = figures.get(name, ())
         warnings = _lines(setting_warnings(worlds[0].config, worlds[0].species))
         lists = [SETTING, warnings] if warnings else []
-        evolved.append(Section(f"{name}: what evolved?", [_lines(analysis.answers.get(name, ())), *drawn[:1]]))
-        details.append(Section(name, [describe_worlds(worlds), *lists, *drawn[1:]], f"condition-{number}"))
+        evolved.append(PageSection(f"{name}: what evolved?", [_lines(analysis.answers.get(name, ())), *drawn[:1]]))
+        details.append(PageSection(name, [describe_worlds(worlds), *lists, *drawn[1:]], f"condition-{number}"))
     return Page(
         " · ".join(analysis.conditions),
         f"Made by hedon from records of version {versions(analysis.runs)}. Intervals are 95 %, over worlds, and shown "
         f"from five worlds on.\n\n{EXPLANATION}",
         [
             *evolved,
-            *(Section(table.title, [table], "verdicts", "Verdicts") for table in verdict),
+            *(PageSection(table.title, [table], "verdicts", "Verdicts") for table in verdict),
             *details,
-            Section("Tables", list(shown.values()), "tables"),
+            PageSection("Tables", list(shown.values()), "tables"),
         ],
         _lines([*analysis.unfinished, *narrow_intervals(analysis.conditions)]),
         analysis.conditions,

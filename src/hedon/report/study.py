@@ -13,7 +13,7 @@ from hedon.measure.catalogue import world_row
 from hedon.record.folder import FIGURES
 from hedon.report.answer import FACTORS, WORLDS, Answer, drawn_file, table_section, write_answer
 from hedon.report.markdown import escape_markdown
-from hedon.report.page import FigureFile, Folded, Page, Section, versions
+from hedon.report.page import FigureFile, Folded, Page, PageSection, versions
 from hedon.report.table import table_csv
 from hedon.study.gather import Gathered
 from hedon.study.item import Item, ItemInputs
@@ -80,11 +80,11 @@ class BuiltItem:
         """Its tables."""
         return [part for part in self.parts if isinstance(part, ResultTable)]
 
-    def section(self) -> Section:
+    def section(self) -> PageSection:
         """Its part of the page."""
         shown = [part for part in self.parts if isinstance(part, FigureFile) or (part.shown and part.rows.height)]
         folded = [] if self.worlds is None else [Folded(self.worlds)]
-        return Section(
+        return PageSection(
             self.item.title, [self.item.says, *(shown or [NOTHING]), *folded], self.item.name, self.item.name
         )
 
@@ -97,9 +97,9 @@ def _lead(gathered: Gathered) -> str:
     )
 
 
-def _sections(study: Study, made: Mapping[str, BuiltItem]) -> list[Section]:
+def _sections(study: Study, made: Mapping[str, BuiltItem]) -> list[PageSection]:
     expected = [f"Expected: {study.expectation}"] if study.expectation else []
-    return [Section(study.title, [study.question, *expected]), *(made[item.name].section() for item in study.items)]
+    return [PageSection(study.title, [study.question, *expected]), *(made[item.name].section() for item in study.items)]
 
 
 def _make(item: Item, inputs: ItemInputs, gathered: Gathered) -> BuiltItem:

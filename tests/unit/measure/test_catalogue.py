@@ -11,6 +11,8 @@ from synthetic_run import write_run
 
 from hedon.analysis import WorldRecord, read_worlds
 from hedon.cli.display.summary import summary_table
+from hedon.compare.contrast import compare
+from hedon.compare.figure import draw_curves
 from hedon.compare.response import points, responses
 from hedon.ensemble.row import world_rows
 from hedon.measure.catalogue import MEASURES, column_measure, gene_mean
@@ -19,6 +21,9 @@ from hedon.measure.response import at_common_age, measured
 from hedon.record.reader import open_run
 from hedon.report.run import run_summary
 from hedon.statistic.interval import AMOUNT
+from hedon.study.claim import Claim
+from hedon.study.item import Condition
+from hedon.study.verdict import judge
 
 
 @pytest.fixture(scope="module")
@@ -51,6 +56,15 @@ def test_one_entry_is_seen_in_summary_table_comparison_and_claims(
     assert compared["crowd"] == "largest number alive"
     assert responses(table.rename({"crowd": "prey.crowd"}), (), ())["prey.crowd"] == "largest number alive: prey"
     assert points(table, (), "crowd")[0].mean.mean == pytest.approx(sum(expected) / 3)
+
+    factor = table.with_columns(cost=pl.Series([1.0, 2.0, 3.0]))
+    drawn = draw_curves(factor, "cost", {"crowd": compared["crowd"]}, ranged=False)
+    assert drawn.axes[0].get_title(loc="left") == "largest number alive"
+    (found,) = compare(factor[:1], factor[1:], {"crowd": compared["crowd"]}, paired=False)
+    assert found.title == "largest number alive"
+
+    claim = Claim("crowded", Condition("baseline"), "many live at once", MEASURES["crowd"].of, "mean", "> 0", low=0.0)
+    assert judge(claim, "baseline", read_worlds([run])).value == pytest.approx(sum(expected) / 3)
 
     asked = at_common_age((MEASURES["crowd"],), 0.0)  # as studies and their claims ask for it
     assert [measured(world, asked)["crowd"] for world in read_worlds([run])] == expected
