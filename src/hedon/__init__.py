@@ -12,7 +12,11 @@ from importlib.metadata import version
 
 from lazy_loader import attach_stub
 
+from hedon.registration import register_presets
+
 # Imported on first use: `hedon --help` must not wait for the engine and the table library.
 __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
 
 __version__ = version("hedon")
+
+register_presets()

@@ -1,4 +1,4 @@
-"""Environments for other programs' agents: arrays of many worlds, slots as environments of libraries, PettingZoo, JAX.
+"""Environments for other programs' agents: arrays of many worlds, and the APIs of Gymnasium, PettingZoo, SB3 and JAX.
 
 `hedon.make` gives the arrays and needs NumPy alone. All else needs optional packages: `pip install "hedon[env]"` for
 Gymnasium and PettingZoo, `"hedon[jax]"` for JAX; Stable-Baselines3 is installed by its own name.
@@ -13,17 +13,31 @@ from hedon.env.vector import VectorEnv
 
 if TYPE_CHECKING:
     from hedon.env.agent import AgentEnv
+    from hedon.env.agent_vector import AgentVectorEnv
     from hedon.env.jax import JaxEnv
     from hedon.env.parallel import ParallelEnv
     from hedon.env.slot import SlotVecEnv
+    from hedon.env.slot_vector import SlotVectorEnv
 
-__all__ = ["AgentEnv", "Group", "JaxEnv", "ParallelEnv", "SlotVecEnv", "VectorEnv", "make"]
+__all__ = [
+    "AgentEnv",
+    "AgentVectorEnv",
+    "Group",
+    "JaxEnv",
+    "ParallelEnv",
+    "SlotVecEnv",
+    "SlotVectorEnv",
+    "VectorEnv",
+    "make",
+]
 
 _PLACES = {
     "AgentEnv": ("agent", "hedon[env]"),
+    "AgentVectorEnv": ("agent_vector", "hedon[env]"),
     "JaxEnv": ("jax", "hedon[jax]"),
     "ParallelEnv": ("parallel", "hedon[env]"),
     "SlotVecEnv": ("slot", "stable-baselines3"),
+    "SlotVectorEnv": ("slot_vector", "hedon[env]"),
 }
 """Where a name is, and what brings the packages that it needs."""
 

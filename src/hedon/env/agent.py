@@ -11,14 +11,47 @@ from numpy.typing import NDArray
 from hedon.config.config import Config
 from hedon.copied import Copied
 from hedon.env.argument import options_of
-from hedon.env.group import Form
+from hedon.env.group import Form, Group
 from hedon.env.make import make
-from hedon.env.vector import RENDER_MODES
+from hedon.env.vector import RENDER_MODES, VectorEnv
 from hedon.error import ArgumentError, EngineError
 from hedon.text import brief
 
 Policy = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 """From observations (agents, entries) to actions (agents, 2)."""
+
+
+def one_group(worlds: VectorEnv) -> Group:
+    """The agents of the only driven species. ArgumentError: there are several."""
+    if len(worlds.groups) > 1:
+        raise ArgumentError(f"species: must be one of {', '.join(worlds.groups)}, that of the agent")
+    return next(iter(worlds.groups.values()))
+
+
+def first_founder(group: Group, world: int) -> int:
+    """The slot of the first founder of a world that has just begun. EngineError: there is none."""
+    founders = np.flatnonzero(group.alive[world])
+    if not len(founders):
+        raise EngineError("the species has no founders: population.initial_count is 0")
+    return int(founders[np.argmin(group.ids[world, founders])])
+
+
+def answered(others: Policy, group: Group) -> NDArray[Any]:
+    """What a policy answers for all agents, (worlds, slots, 2). ArgumentError: it is no table of actions."""
+    shape = group.actions.shape
+    answer = others(group.observations.reshape(-1, len(group.columns)))
+    given = np.asarray(answer)
+    table = (shape[0] * shape[1], shape[2])
+    if given.shape != table or given.dtype.kind not in "fiu":
+        said = f"{given.shape} {given.dtype}" if given.ndim else brief(repr(answer))
+        raise ArgumentError(f"others: must return numbers of shape {table}, not {said}")
+    given = given.reshape(shape)
+    wrong = group.alive[..., None] & ~((given >= group.low) & (given <= group.high))
+    if wrong.any():
+        world, slot, motor = np.argwhere(wrong)[0]
+        place = f"others: returned [{world * shape[1] + slot}, {motor}] = {given[world, slot, motor]}"
+        raise ArgumentError(f"{place}: must be from {group.low:g} to {group.high:g}")
+    return given.astype(np.float32)
 
 
 class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
@@ -64,9 +97,7 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self._vector = make(
             config, 1, seed, species, actions, repeat, max_steps, render_mode, threads, overrides=overrides
         )
-        if len(self._vector.groups) > 1:
-            raise ArgumentError(f"species: must be one of {', '.join(self._vector.groups)}, that of the agent")
-        (self._group,) = self._vector.groups.values()
+        self._group = one_group(self._vector)
         if others is not None and not callable(others):
             raise ArgumentError(f"others: must be a function from observations to actions, not {brief(repr(others))}")
         self._others = others
@@ -95,10 +126,7 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         options_of(options)
         super().reset(seed=seed)
         self._vector.reset(None if seed is None else [seed])
-        founders = np.flatnonzero(self._group.alive[0])
-        if not len(founders):
-            raise EngineError("the species has no founders: population.initial_count is 0")
-        self._slot = int(founders[np.argmin(self._group.ids[0, founders])])
+        self._slot = first_founder(self._group, 0)
         return self._seen(), self._info()
 
     def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
@@ -118,9 +146,8 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         given = np.asarray(action)
         if given.shape != (2,) or given.dtype.kind not in "fiu":
             raise ArgumentError("action: must be two numbers, left and right")
-        actions = group.actions.copy()  # so that one that is refused leaves none behind
-        if self._others is not None:
-            actions[0] = self._asked(self._others(group.observations[0]))
+        # A copy, so that an action that is refused leaves none behind.
+        actions = group.actions.copy() if self._others is None else answered(self._others, group)
         actions[0, slot] = given
         self._vector.step(actions)
         died = bool(group.terminated[0, slot])
@@ -136,20 +163,7 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        (self._group,) = self._vector.groups.values()
-
-    def _asked(self, answer: Any) -> NDArray[Any]:
-        """What the policy of the others answered. ArgumentError: it is no table of actions."""
-        group, given = self._group, np.asarray(answer)
-        if given.shape != group.actions.shape[1:] or given.dtype.kind not in "fiu":
-            said = f"{given.shape} {given.dtype}" if given.ndim else brief(repr(answer))
-            raise ArgumentError(f"others: must return numbers of shape {group.actions.shape[1:]}, not {said}")
-        wrong = group.alive[0][:, None] & ~((given >= group.low) & (given <= group.high))
-        if wrong.any():
-            slot, motor = np.argwhere(wrong)[0]
-            place = f"others: returned [{slot}, {motor}] = {given[slot, motor]}"
-            raise ArgumentError(f"{place}: must be from {group.low:g} to {group.high:g}")
-        return given
+        self._group = one_group(self._vector)
 
     def render(self) -> Any:
         """A picture of the world: see `VectorEnv.render`."""

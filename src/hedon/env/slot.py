@@ -8,8 +8,8 @@ import numpy as np
 from stable_baselines3.common.vec_env import VecEnv  # pyright: ignore[reportMissingImports]
 
 from hedon.copied import Copied
-from hedon.env.argument import RESET_MASK
-from hedon.env.group import NOBODY, Group
+from hedon.env.group import Group
+from hedon.env.slot_life import SlotLives
 from hedon.env.vector import VectorEnv
 from hedon.error import ArgumentError
 
@@ -33,23 +33,27 @@ class SlotVecEnv(VecEnv, Copied):
     """
 
     def __init__(self, worlds: VectorEnv) -> None:
-        if len(worlds.groups) > 1:
-            raise ArgumentError(f"worlds: must drive one species, not {', '.join(worlds.groups)}")
-        self.worlds = worlds
-        self.group: Group = next(iter(worlds.groups.values()))
+        self.lives = SlotLives(worlds, at_once=True)
         self.render_mode = worlds.render_mode
-        self._given: Any = self.group.actions
-        self._paid, self._lived = np.zeros(self.group.ids.shape), np.zeros(self.group.ids.shape, np.int64)
+        self._given: Any = self.lives.group.actions
         self._begun = time.monotonic()
-        super().__init__(self.group.ids.size, worlds.single_observation_space, worlds.single_action_space)
+        super().__init__(self.lives.count, worlds.single_observation_space, worlds.single_action_space)
+
+    @property
+    def worlds(self) -> VectorEnv:
+        """The worlds of the slots."""
+        return self.lives.worlds
+
+    @property
+    def group(self) -> Group:
+        """The agents in the slots."""
+        return self.lives.group
 
     def reset(self) -> Any:
         """Begins all worlds: (slots, entries)."""
         seed = next((each for each in self._seeds if each is not None), None)  # of the first world
-        self.worlds.reset(seed=seed)
         self._reset_seeds()
-        self._paid[...], self._lived[...] = 0, 0
-        return self._table(self.group.observations)
+        return self.lives.reset(seed)
 
     def step_async(self, actions: Any) -> None:
         """Tells every agent what to do: (slots, 2)."""
@@ -57,39 +61,22 @@ class SlotVecEnv(VecEnv, Copied):
 
     def step_wait(self) -> Any:
         """Advances the worlds: observations (slots, entries), rewards (slots,), ends of lives (slots,), infos."""
-        group, worlds = self.group, self.worlds
-        worlds.step(self._given)
-        rewards = group.rewards.ravel().copy()
-        over = group.truncated.any(axis=1) | ~group.alive.any(axis=1)
-        there = group.ids_before != NOBODY
-        self._paid += group.rewards
-        self._lived += there
-        ended = there & (group.terminated | over[:, None])
-        lives = [(float(self._paid[at]), int(self._lived[at])) for at in zip(*np.nonzero(ended), strict=True)]
-        self._paid[ended], self._lived[ended] = 0, 0
-        dones = ended.ravel()
-        cut = (group.truncated & ~group.born).ravel()
-        rows = self._table(group.observations)
-        nothing = np.zeros(len(group.columns), np.float32)
-        if over.any():
-            worlds.reset(options={RESET_MASK: over})
-        infos: list[dict[str, Any]] = [{"alive": each} for each in group.alive.ravel().tolist()]
+        step = self.lives.step(self._given)
+        infos: list[dict[str, Any]] = [{"alive": each} for each in step.alive.tolist()]
         now = round(time.monotonic() - self._begun, 6)
-        for i, (paid, lived) in zip(np.flatnonzero(dones).tolist(), lives, strict=True):
-            last = rows[i] if cut[i] else nothing
-            infos[i] |= {"terminal_observation": last, "TimeLimit.truncated": bool(cut[i])}
-            infos[i]["episode"] = {"r": paid, "l": lived * worlds.repeat, "t": now}
-        return self._table(group.observations) if over.any() else rows, rewards, dones, infos
+        for i in np.flatnonzero(step.ended).tolist():
+            infos[i] |= {"terminal_observation": step.last[i], "TimeLimit.truncated": bool(step.cut[i])}
+            infos[i]["episode"] = {"r": float(step.paid[i]), "l": int(step.lived[i]), "t": now}
+        return step.observations, step.rewards, step.ended, infos
 
     def __getstate__(self) -> dict[str, Any]:
-        given = None if self._given is self.group.actions else self._given
-        return {name: value for name, value in self.__dict__.items() if name != "group"} | {"_given": given}
+        given = None if self._given is self.lives.group.actions else self._given
+        return self.__dict__ | {"_given": given}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        (self.group,) = self.worlds.groups.values()
         if self._given is None:
-            self._given = self.group.actions
+            self._given = self.lives.group.actions
 
     def close(self) -> None:
         """Closes the worlds."""
@@ -127,6 +114,3 @@ class SlotVecEnv(VecEnv, Copied):
         if indices is None:
             return self.num_envs
         return len(list(indices)) if isinstance(indices, Iterable) else 1
-
-    def _table(self, array: Any) -> Any:
-        return array.reshape(self.num_envs, -1).copy()

@@ -1,0 +1,114 @@
+"""What a step of worlds is for each slot as an environment of its own: whose life ended, and what it was paid."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hedon.env.argument import RESET_MASK
+from hedon.env.group import NOBODY, Group
+from hedon.env.vector import VectorEnv
+from hedon.error import ArgumentError
+
+
+@dataclass(frozen=True, slots=True)
+class SlotStep:
+    """What all slots of all worlds did in a step.
+
+    Attributes:
+        observations: (slots, entries); of lives that ended, `last`, unless what follows shows at once.
+        rewards: (slots,), of who was there before the step.
+        ended: (slots,), whether a life ended: by death, or since its world is over.
+        cut: (slots,), whether a life ended that would go on: its time was over.
+        last: (slots, entries), the last observation of each life that ended; zeros after death.
+        paid: (slots,), what each life that ended was paid; 0 elsewhere.
+        lived: (slots,), how long each life that ended was [step]; 0 elsewhere.
+        alive: (slots,), whether anybody is there now.
+    """
+
+    observations: NDArray[np.float32]
+    rewards: NDArray[np.float32]
+    ended: NDArray[np.bool_]
+    cut: NDArray[np.bool_]
+    last: NDArray[np.float32]
+    paid: NDArray[np.float64]
+    lived: NDArray[np.int64]
+    alive: NDArray[np.bool_]
+
+
+class SlotLives:
+    """The slots of one driven species, whose worlds begin again by themselves when time is over or nobody is left.
+
+    Args:
+        worlds: Of `hedon.make`, with one driven species; nothing else may step or reset them.
+        at_once: Whether worlds that are over begin again in the same step, and a newborn shows in the step in which
+            the last agent of its slot died; otherwise both do in the next one.
+
+    Attributes:
+        worlds: Themselves.
+        group: The agents.
+
+    Raises:
+        ArgumentError: Several species are driven.
+    """
+
+    def __init__(self, worlds: VectorEnv, *, at_once: bool) -> None:
+        if len(worlds.groups) > 1:
+            raise ArgumentError(f"worlds: must drive one species, not {', '.join(worlds.groups)}")
+        self.worlds = worlds
+        self.group: Group = next(iter(worlds.groups.values()))
+        self._paid, self._lived = np.zeros(self.group.ids.shape), np.zeros(self.group.ids.shape, np.int64)
+        self._at_once, self._over = at_once, np.zeros(len(self.group.ids), np.bool_)
+
+    @property
+    def count(self) -> int:
+        """How many slots there are in all worlds."""
+        return self.group.ids.size
+
+    def reset(self, seed: Any = None) -> NDArray[np.float32]:
+        """Begins all worlds; returns the observations (slots, entries)."""
+        self.worlds.reset(seed=seed)
+        self._over = np.zeros(len(self.group.ids), np.bool_)
+        self._paid[...], self._lived[...] = 0, 0
+        return self._table(self.group.observations)
+
+    def step(self, actions: Any) -> SlotStep:
+        """Advances all worlds.
+
+        Args:
+            actions: (slots, 2), or the array `actions` of the group.
+        """
+        group, worlds, begins = self.group, self.worlds, self._over
+        worlds.step(actions)
+        if begins.any():
+            worlds.reset(options={RESET_MASK: begins})
+        rewards = np.where(begins[:, None], np.float32(0), group.rewards)
+        over = ~begins & (group.truncated.any(axis=1) | ~group.alive.any(axis=1))
+        there = ~begins[:, None] & (group.ids_before != NOBODY)
+        self._paid += rewards
+        self._lived += there
+        ended = there & (group.terminated | over[:, None])
+        paid, lived = np.where(ended, self._paid, 0.0).ravel(), np.where(ended, self._lived, 0).ravel()
+        self._paid[ended], self._lived[ended] = 0, 0
+        cut, ended = (ended & group.truncated & ~group.born).ravel(), ended.ravel()
+        rows = self._table(group.observations)
+        last = np.where(cut[:, None], rows, np.float32(0))
+        if not self._at_once:
+            self._over = over
+            rows[ended] = last[ended]
+        elif over.any():
+            worlds.reset(options={RESET_MASK: over})
+            rows = self._table(group.observations)
+        alive = group.alive.ravel().copy()
+        return SlotStep(rows, rewards.ravel(), ended, cut, last, paid, lived * worlds.repeat, alive)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "group"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        (self.group,) = self.worlds.groups.values()
+
+    def _table(self, array: Any) -> Any:
+        return array.reshape(self.count, -1).copy()
