@@ -188,7 +188,7 @@ def test_names_are_printed_as_they_are(tmp_path):
         answer = answer_of("run", "baseline", "--steps", "64", "--out", tmp_path / name, "--no-report")
         assert answer.returncode == 0, answer.stderr
         assert f"/{name}" in answer.stdout
-        assert f"/{name}" in answer_of("report", tmp_path / name, "--no-figures").stdout
+        assert f"/{name}" in answer_of("report", tmp_path / name, "--figures", "none").stdout
 
 
 def test_results_can_be_read_while_the_run_goes_on(tmp_path):
@@ -198,7 +198,7 @@ def test_results_can_be_read_while_the_run_goes_on(tmp_path):
     try:
         wait_for(folder / "agents" / "living.parquet")
         assert hedon.open_run(folder).agents().height >= 50
-        assert answer_of("report", folder, "--no-figures").returncode == 0
+        assert answer_of("report", folder, "--figures", "none").returncode == 0
     finally:
         process.send_signal(signal.SIGINT)
         process.wait(timeout=60)
@@ -209,7 +209,7 @@ def test_extinction_is_said_and_recorded(tmp_path):
     answer = answer_of("run", "baseline", "--steps", 20_000, "--out", tmp_path / "out", *lethal, "--no-report")
     assert answer.returncode == 0, answer.stderr
     assert "died out at step" in answer.stdout
-    assert answer_of("report", tmp_path / "out", "--no-figures").returncode == 0
+    assert answer_of("report", tmp_path / "out", "--figures", "none").returncode == 0
     world = json.loads((tmp_path / "out" / "summary.json").read_text())["worlds"][0]
     assert world["extinct"] is True
     assert world["alive"] == 0

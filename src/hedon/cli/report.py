@@ -1,7 +1,7 @@
 """The command `hedon report`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -11,6 +11,8 @@ from hedon.text import printable
 if TYPE_CHECKING:
     from rich.console import Console
 
+Figures = Literal["svg", "pdf", "png", "none"]
+
 
 def report(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN…", help="Folders of runs, finished or not.")],
@@ -18,8 +20,9 @@ def report(
         Path | None, typer.Option(help="Folder of the report; by default RUN itself, or report for several runs.")
     ] = None,
     figures: Annotated[
-        bool, typer.Option("--figures/--no-figures", help="Whether to draw figures, which takes most of the time.")
-    ] = True,
+        Figures,
+        typer.Option(help="Files of figures: svg; pdf or png as well; none draws none, which saves most of the time."),
+    ] = "svg",
 ) -> None:
     """Summarize runs on one page, with figures, tables and the claims of studies about them.
 
@@ -36,7 +39,7 @@ def report(
     show_report(runs[0], make_console(), *runs[1:], out=out, figures=figures)
 
 
-def show_report(run: Path, console: "Console", *others: Path, out: Path | None = None, figures: bool = True) -> None:
+def show_report(run: Path, console: "Console", *others: Path, out: Path | None = None, figures: str = "svg") -> None:
     """Writes a report on one or more runs, and prints their summaries and where the files are."""
     # Imported here because this takes seconds: neither another command nor the start of a run must wait for it.
     import json

@@ -11,10 +11,12 @@ from .law import draw_birth as draw_birth
 from .law import draw_hazard as draw_hazard
 from .named import NamedFigure as NamedFigure
 from .style import BLUE as BLUE
+from .style import COLUMN as COLUMN
 from .style import GREEN as GREEN
 from .style import INK as INK
 from .style import MUTED as MUTED
 from .style import ORANGE as ORANGE
+from .style import PAGE as PAGE
 from .style import PALE as PALE
 from .style import VERMILION as VERMILION
 from .style import draw_message as draw_message

@@ -4,7 +4,8 @@ Colors: Okabe & Ito (2008), "Color universal design", and grays. `config.color` 
 """
 
 import io
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
@@ -21,6 +23,8 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from hedon.config.color import food_colors as food_colors
 from hedon.config.color import meal_colors as meal_colors
+from hedon.config.problem import nearest
+from hedon.error import ArgumentError
 from hedon.record.atomic import write_atomically
 
 INK = "#22303c"
@@ -66,6 +70,8 @@ STYLE: dict[Any, Any] = {
     "legend.handlelength": 1.4,
 }
 DOTS_PER_INCH = 160
+COLUMN, PAGE = 3.5, 7.2
+"""Usual widths of a column and of a page in journals [inch]."""
 _LOG_NUMBERS = {10.0: (1, 2, 3, 5, 7), 300.0: (1, 2, 5)}  # by the ratio of a logarithmic axis's ends, up to which
 
 
@@ -91,14 +97,32 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def save_figure(figure: Figure, path: Path) -> Path:
-    """Writes a figure as SVG, or as PNG if the path says so, atomically, and returns the path.
+def save_figure(figure: Figure, path: Path | str, width: float | None = None) -> Path:
+    """Writes a figure in the format of the path's suffix: .svg, .pdf or .png. Returns the path.
 
     Args:
         figure: What to write.
         path: Of the file; its folder exists.
+        width: For which it is laid out anew, with letters of the same size [inch]: `COLUMN` and `PAGE` are those of
+            journals. None for that of the figure.
+
+    Raises:
+        ArgumentError: The suffix is another one, or the width is not above 0.
+        RecordError: The file cannot be written.
     """
-    content = png_bytes(figure) if path.suffix == ".png" else svg_bytes(figure)
+    path = Path(path)
+    form = path.suffix.removeprefix(".")
+    if form not in FORMATS:
+        near = nearest(form, FORMATS)
+        hint = f"; did you mean .{near}?" if near else ""
+        raise ArgumentError(f"path = {path}: must end in {', '.join(f'.{each}' for each in FORMATS)}{hint}")
+    if width is not None:
+        if not (isinstance(width, int | float) and 0 < width < math.inf):
+            raise ArgumentError(f"width = {width!r}: must be a number above 0, in inches")
+        size = figure.get_size_inches()
+        figure.set_size_inches(width, size[1] * width / size[0])
+        figure.set_layout_engine("constrained", wspace=0.05, hspace=0.05)
+    content = FORMATS[form](figure)
     write_atomically(path, lambda file: file.write(content))
     return path
 
@@ -121,6 +145,21 @@ def svg_bytes(figure: Figure) -> bytes:
         FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None, "Creator": None})
         FigureCanvasAgg(figure)
     return buffer.getvalue()
+
+
+def pdf_bytes(figure: Figure) -> bytes:
+    """A figure as PDF with its fonts embedded as TrueType, which publishers ask for; the same bytes each time."""
+    buffer = io.BytesIO()
+    with styled():
+        mpl.rcParams["pdf.fonttype"] = 42
+        _lay_out(figure)
+        FigureCanvasPdf(figure).print_pdf(buffer, metadata={"CreationDate": None})
+        FigureCanvasAgg(figure)
+    return buffer.getvalue()
+
+
+FORMATS: dict[str, Callable[[Figure], bytes]] = {"svg": svg_bytes, "pdf": pdf_bytes, "png": png_bytes}
+"""What writes a figure, by the suffix of its file."""
 
 
 def _lay_out(figure: Figure) -> None:

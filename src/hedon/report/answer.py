@@ -8,7 +8,7 @@ from typing import Any
 
 from hedon.analysis.result import ResultTable
 from hedon.figure.named import NamedFigure
-from hedon.figure.style import svg_bytes
+from hedon.figure.style import FORMATS, svg_bytes
 from hedon.measure.summary import plain
 from hedon.record.atomic import write_atomically
 from hedon.record.lock import one_writer
@@ -59,9 +59,11 @@ def table_section(table: ResultTable) -> PageSection:
     return PageSection(table.title, [table], table.name)
 
 
-def drawn_file(named: NamedFigure, path: str = "") -> FigureFile:
-    """A figure as a file of its name, or of another path."""
-    return FigureFile(named.question, path or f"{named.name}.svg", svg_bytes(named.figure), named.caption)
+def drawn_file(named: NamedFigure, path: str = "", form: str = "svg") -> FigureFile:
+    """A figure as an SVG file of its name, or of another path, and beside it in another format."""
+    path, svg = path or f"{named.name}.svg", svg_bytes(named.figure)
+    others = {} if form == "svg" else {f"{path.removesuffix('svg')}{form}": FORMATS[form](named.figure)}
+    return FigureFile(named.question, path, svg, named.caption, others)
 
 
 def write_answer(folder: Path, answer: Answer) -> list[Path]:
@@ -78,7 +80,8 @@ def replace_files(folder: Path, answer: Answer) -> list[Path]:
     """As `write_answer`, in a folder into which no other process writes."""
     name, page = answer.name, answer.page
     blocks = [block for section in page.sections for block in section.blocks]
-    figures = {block.path: block.svg for block in blocks if isinstance(block, FigureFile)}
+    drawn = [block for block in blocks if isinstance(block, FigureFile)]
+    figures = {block.path: block.svg for block in drawn}
     files: dict[str, str | bytes] = {f"{name}.html": html_page(page), f"{name}.md": markdown_page(page), **answer.files}
     stale: set[str] = set()
     if answer.content is not None:
@@ -92,6 +95,7 @@ def replace_files(folder: Path, answer: Answer) -> list[Path]:
     places = {str(Path(path).parent) for path in figures} or {"."}
     for each in (folder / place / f"{stem}.svg" for place in places for stem in stale):
         each.unlink(missing_ok=True)
+    figures |= {path: content for block in drawn for path, content in block.others.items()}
     for path, text in {**files, **figures}.items():
         data = text.encode() if isinstance(text, str) else text
         (folder / path).parent.mkdir(parents=True, exist_ok=True)

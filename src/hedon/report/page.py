@@ -31,12 +31,14 @@ class FigureFile:
         path: of its SVG file, relative to the page.
         svg: the content of the file.
         caption: how to read it; may be empty.
+        others: files of the figure in other formats, by their paths.
     """
 
     question: str
     path: str
     svg: bytes
     caption: str = ""
+    others: Mapping[str, bytes] = field(default_factory=dict)
 
     @property
     def uri(self) -> str:

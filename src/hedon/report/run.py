@@ -15,7 +15,9 @@ from typing import Any
 from hedon.analysis.world.record import Conditions
 from hedon.config.color import food_colors
 from hedon.demography.forecast import setting_warnings
+from hedon.error import ArgumentError
 from hedon.figure.named import NamedFigure
+from hedon.figure.style import FORMATS
 from hedon.figure.world import draw_world, telling_agent
 from hedon.measure.summary import plain, summarize
 from hedon.record.atomic import write_atomically
@@ -33,16 +35,18 @@ from hedon.report.page import FigureFile, Page, PageSection, describe_worlds, ve
 from hedon.report.topic import TOPICS, Tell, tell_nobody
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.study.catalogue import reported_figures
+from hedon.text import brief
 
 EXPLANATION = (
     "Agents are rewarded by weights that they inherit with mutations, and learn what pays. A weight that nothing "
     "selects changes too, by chance: how far, genes tell that mutate along the same pedigree and do nothing."
 )
+NO_FIGURES = "none"
 SETTING = "What the setting itself says, before any run:"
 
 
 def write_report(
-    *runs: Run, folder: Path | str | None = None, figures: bool = True, tell: Tell = tell_nobody
+    *runs: Run, folder: Path | str | None = None, figures: str = "svg", tell: Tell = tell_nobody
 ) -> list[Path]:
     """Writes the report of some runs, over those that are there.
 
@@ -52,7 +56,8 @@ def write_report(
     Args:
         runs: one or more.
         folder: for all but the summaries; by default that of the run, or `report` for several.
-        figures: whether to draw figures, which takes most of the time.
+        figures: their format: "svg", which the page contains in any case, or "pdf" or "png" as well; "none" for no
+            figures, which take most of the time.
         tell: is told of each step.
 
     Returns:
@@ -60,19 +65,22 @@ def write_report(
         files), `figures/*.svg`.
 
     Raises:
+        ArgumentError: there is no such format.
         RecordError: a folder cannot be written, or a `final.npz` is damaged; all other files are there then.
     """
+    if figures not in (known := (*FORMATS, NO_FIGURES)):
+        raise ArgumentError(f"figures = {brief(repr(figures))}: must be one of {', '.join(known)}")
     folder = Path(folder or (runs[0].path if len(runs) == 1 else "report"))
     faults: list[RecordError] = []
     with one_writer(folder, "the report"):
         # All figures together count as many steps as the topics.
         analysis = analyze(runs, tell=lambda done, of, step: tell(done, 2 * of, step))
-        tell(len(TOPICS), 2 * len(TOPICS), "drawing and writing" if figures else "writing")
+        tell(len(TOPICS), 2 * len(TOPICS), "writing" if figures == NO_FIGURES else "drawing and writing")
         summaries = [_write_summary(run) for run in analysis.runs]
         drawn: dict[str, list[FigureFile]] = {}
-        for condition, named in _figures(analysis, faults) if figures else ():
+        for condition, named in () if figures == NO_FIGURES else _figures(analysis, faults):
             taken = {figure.path for group in drawn.values() for figure in group}
-            drawn.setdefault(condition, []).append(_as_file(named, taken))
+            drawn.setdefault(condition, []).append(_as_file(named, taken, figures))
         answers = write_analysis(analysis, folder / ANALYSIS)[0]
         pages = replace_files(folder, Answer("report", report_page(analysis, drawn)))
     if faults:
@@ -174,7 +182,7 @@ def _with_prefix(prefix: str, named: NamedFigure, *, several: bool) -> NamedFigu
     return replace(named, name=f"{slug}-{named.name}") if several else named
 
 
-def _as_file(named: NamedFigure, taken: Container[str]) -> FigureFile:
+def _as_file(named: NamedFigure, taken: Container[str], form: str) -> FigureFile:
     """A figure as a file of its name, with a number where another has it: prefixes may differ in signs alone."""
     names = (f"{FIGURES}/{named.name}{end}.svg" for end in chain([""], (f"-{i}" for i in count(2))))
-    return drawn_file(named, next(name for name in names if name not in taken))
+    return drawn_file(named, next(name for name in names if name not in taken), form)

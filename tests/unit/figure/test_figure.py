@@ -1,3 +1,5 @@
+import shutil
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,11 +16,12 @@ from hedon.analysis.gene.weight import last_agents
 from hedon.analysis.world.population import history
 from hedon.config.color import food_colors
 from hedon.config.title import weight_title
+from hedon.error import ArgumentError
 from hedon.figure.film import Film
 from hedon.figure.history import HistoryRow, draw_histories
 from hedon.figure.outline import wall_outline
 from hedon.figure.population import draw_population
-from hedon.figure.style import png_bytes, save_figure, step_unit
+from hedon.figure.style import COLUMN, PAGE, draw_message, png_bytes, save_figure, step_unit
 from hedon.figure.trace import over_worlds
 from hedon.figure.weight import draw_weights
 from hedon.figure.world import draw_world, ray_segments, telling_agent
@@ -251,3 +254,39 @@ def _without_agents(snapshot: Snapshot) -> Snapshot:
 )
 def test_what_a_gene_is_called(gene: str, title: str) -> None:
     assert weight_title(gene) == title
+
+
+def test_a_pdf_has_its_fonts_embedded_as_truetype(tmp_path):
+    figure = draw_message("A letter, a µ and a Ω")
+    content = save_figure(figure, tmp_path / "message.pdf").read_bytes()
+    assert content.startswith(b"%PDF-")
+    assert b"/FontFile2" in content
+    assert b"/CIDFontType2" in content
+    assert b"/Type3" not in content
+    assert save_figure(figure, tmp_path / "again.pdf").read_bytes() == content
+    if shutil.which("pdffonts"):
+        said = subprocess.run(["pdffonts", tmp_path / "message.pdf"], capture_output=True, text=True, check=True).stdout
+        rows = said.splitlines()[2:]
+        assert rows
+        assert all("TrueType" in row and row.split()[-5] == "yes" for row in rows), "embedded"
+
+
+def test_a_figure_is_laid_out_for_the_width_of_a_column(tmp_path):
+    figure = draw_message("no worlds yet")
+    widths = {"page": PAGE, "column": COLUMN}
+    wide, narrow = (imread(save_figure(figure, tmp_path / f"{name}.png", width)) for name, width in widths.items())
+    assert (wide.shape[1], narrow.shape[1]) == (round(PAGE * 160), round(COLUMN * 160))
+    assert wide.shape[0] / wide.shape[1] == pytest.approx(narrow.shape[0] / narrow.shape[1], rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("name", "width", "says"),
+    [
+        ("a.pfd", None, r"path = a\.pfd: must end in \.svg, \.pdf, \.png; did you mean \.pdf\?"),
+        ("a", None, r"path = a: must end in \.svg, \.pdf, \.png"),
+        ("a.pdf", 0, "width = 0: must be a number above 0, in inches"),
+    ],
+)
+def test_a_figure_that_cannot_be_written_is_refused(name, width, says):
+    with pytest.raises(ArgumentError, match=says):
+        save_figure(draw_message(""), name, width)

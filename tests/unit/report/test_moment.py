@@ -17,7 +17,7 @@ from hedon.report.run import narrow_intervals
 
 def test_a_killed_run_says_that_its_tables_are_of_two_moments(tmp_path: Path) -> None:
     killed = write_run(tmp_path / "killed", intervals=8, worlds=2, snapshot=False, status="running", unsaved=3)
-    done = CliRunner().invoke(app, ["report", str(killed), "--no-figures"])
+    done = CliRunner().invoke(app, ["report", str(killed), "--figures", "none"])
     assert done.exit_code == 0, done.output
     sentence = (
         "The run killed has not finished (status running): births, deaths, foods eaten and agents alive are those up "

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import pytest
 from synthetic_run import write_run
 
+from hedon.error import ArgumentError
 from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 from hedon.report.run import write_report
@@ -47,7 +48,7 @@ def test_without_figures_a_report_has_all_numbers(tmp_path: Path) -> None:
     folder = write_run(tmp_path / "run", intervals=3, worlds=2)
     with_figures = write_report(open_run(folder))
     numbers = [(folder / "analysis" / "analysis.json").read_bytes(), (folder / "summary.json").read_bytes()]
-    files = write_report(open_run(folder), folder=tmp_path / "lean", figures=False)
+    files = write_report(open_run(folder), folder=tmp_path / "lean", figures="none")
     assert [file.name for file in files] == NAMES[:4]
     assert [(tmp_path / "lean" / "analysis" / "analysis.json").read_bytes(), files[0].read_bytes()] == numbers
     assert "<figure>" in with_figures[1].read_text()
@@ -86,3 +87,14 @@ def test_a_report_reads_each_file_once(tmp_path: Path, monkeypatch: pytest.Monke
     records = {name: times for name, times in read.items() if name.endswith((".parquet", ".toml"))}
     parts = {f"{table}/part-000000.parquet": 1 for table in ("agents", "population")}
     assert records == {**parts, "agents/living.parquet": 1, "config.toml": 1}
+
+
+def test_figures_come_in_another_format_too(tmp_path: Path) -> None:
+    files = write_report(open_run(write_run(tmp_path / "run", intervals=5, worlds=1)), figures="pdf")
+    drawn = [path for path in files if path.parent.name == "figures"]
+    stems = [{path.stem for path in drawn if path.suffix == suffix} for suffix in (".svg", ".pdf")]
+    assert len(stems[0]) > 5
+    assert stems[0] == stems[1]
+    assert all(path.stat().st_size > 1000 for path in drawn)
+    with pytest.raises(ArgumentError, match="figures = 'jpg': must be one of svg, pdf, png, none"):
+        write_report(open_run(tmp_path / "run"), figures="jpg")
