@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from hedon.cli.run import Checkpoint, Report, Threads, run_and_report
-from hedon.experiment.argument import MAX_STEPS
+from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS
 
 
@@ -20,6 +20,12 @@ def branch(
         int | None,
         typer.Option(help="Total steps of each world; by default as in the old run.", min=1, max=MAX_STEPS),
     ] = None,
+    seeds: Annotated[
+        str | None, typer.Option(help="Replay the tape: one future of a world per seed, as in 1-30.")
+    ] = None,
+    of: Annotated[
+        int | None, typer.Option(metavar="SEED", help="With --seeds: the old run's world, where it has several.")
+    ] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
     ] = None,
@@ -30,18 +36,21 @@ def branch(
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
     report: Report = True,
 ) -> None:
-    """Continue from a checkpoint with changed settings, as a new run.
+    """Continue from a checkpoint with changed settings or with other chances, as a new run.
 
-    Without --set the worlds continue unchanged in a new folder. Settings that fix the layout of the saved worlds
-    (arena, numbers of rays and touch sectors, kinds of food, window) cannot be changed.
+    Without --set and --seeds the worlds continue unchanged in a new folder. With --seeds, one world has several
+    futures, which begin with the same agents and differ by chance alone. Settings that fix the layout of the saved
+    worlds (arena, numbers of rays and touch sectors, kinds of food, window) cannot be changed.
 
     \b
     Examples:
       hedon branch runs/baseline --steps 400000 --set food.normal.growth_rate=0.2
       hedon branch runs/baseline --at 102400 --out runs/poorer --set energy.basic_cost=0.001
+      hedon branch runs/baseline --steps 409600 --seeds 1-30 --of 1
     """
     from hedon.experiment.branch import plan_branch, start_branch
 
-    plan = plan_branch(run, out, overrides or (), at, steps, threads, frames, checkpoint)
+    futures = None if seeds is None else parse_seeds(seeds, "--seeds")
+    plan = plan_branch(run, out, overrides or (), at, steps, threads, frames, checkpoint, futures, of)
     begun = f" from step {plan.parent.step:,}"
     run_and_report(plan.run, lambda display: start_branch(plan, display), begun, report=report)

@@ -1,6 +1,6 @@
 """Continues from a checkpoint of a run with changed settings, as a new run that names its parent."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -8,6 +8,7 @@ from hedon.config.config import Config
 from hedon.config.dump import diff, digest
 from hedon.config.fixed import fixed_path
 from hedon.config.load import load_config
+from hedon.error import ArgumentError
 from hedon.experiment import argument
 from hedon.experiment.checkpoint import check_head, require_undriven, restore, same_backend
 from hedon.experiment.interrupt import count_interrupts
@@ -37,12 +38,14 @@ class BranchPlan:
         parent: The run and the step that it starts from.
         checkpoint: The worlds to start from.
         backend: Instruction set to use.
+        only: Index of the parent's world that all worlds go on from; None if each goes on from its own.
     """
 
     run: RunPlan
     parent: Parent
     checkpoint: Checkpoint
     backend: str
+    only: int | None = None
 
 
 def plan_branch(
@@ -54,6 +57,8 @@ def plan_branch(
     threads: int = 0,
     frames: int | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    seeds: Iterable[int] | None = None,
+    of: int | None = None,
 ) -> BranchPlan:
     """Plans a branch of a run; changes nothing.
 
@@ -66,6 +71,8 @@ def plan_branch(
         threads: Threads to use; 0 for all processors.
         frames: Steps between two frames; None for those of the old run.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
+        seeds: Of several futures of one world, one each; None to go on with the seeds of the old run.
+        of: With `seeds`, the seed of the old run's world; None for its only one.
 
     Raises:
         RecordError: It is not a run, has no such checkpoint or a damaged one, or has come further than `steps`.
@@ -95,10 +102,11 @@ def plan_branch(
     place = out or free_folder(folder.parent / f"{folder.resolve().name}-branch{step}")
     every = old.frames if frames is None else frames
     founders, networks = load_founders(folder, config), load_networks(folder, config)
-    plan = RunPlan(
-        changed, old.seeds, total, place, threads, every, checkpoint_seconds, founders, networks, rules=old.rules
-    )
-    return BranchPlan(plan, parent, checkpoint, same_backend(old.backend))
+    only = _world_of(old, of, config, futures=seeds is not None)
+    mine = old.seeds if seeds is None else argument.different(argument.seed_list(seeds))
+    plan = RunPlan(changed, mine, total, place, threads, every, checkpoint_seconds, founders, networks, rules=old.rules)
+    parent = replace(parent, seed=None if only is None else old.seeds[only])
+    return BranchPlan(plan, parent, checkpoint, same_backend(old.backend), only)
 
 
 def start_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
@@ -106,7 +114,7 @@ def start_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
     with count_interrupts() as interrupted:
         require_memory(plan.run.config, len(plan.run.seeds), plan.run.threads)
         simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.backend, plan.run.rules)
-        start = restore(simulation, plan.checkpoint, f"the checkpoint of {plan.parent.folder}")
+        start = restore(simulation, plan.checkpoint, f"the checkpoint of {plan.parent.folder}", plan.only)
         manifest = replace(first_manifest(plan.run, simulation, start.step), parent=plan.parent)
         return start_run(simulation, plan.run, manifest, replace(start, seconds=0.0), display, interrupted)
 
@@ -121,11 +129,14 @@ def branch(
     frames: int | None = None,
     display: Display | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    seeds: Iterable[int] | None = None,
+    of: int | None = None,
 ) -> Manifest:
-    """Continues from a checkpoint of a run, in a new folder, with some settings changed.
+    """Continues from a checkpoint of a run, in a new folder, with some settings changed or with other chances.
 
-    The new run's tables begin at the checkpoint. `agents` has the agents that lived then or were born later. The
-    first row of `population` counts from the last row before the checkpoint.
+    With `seeds`, one world of the old run has several futures: the same agents, genes and networks, and from then on
+    the chances of each seed. The new run's tables begin at the checkpoint. `agents` has the agents that lived then or
+    were born later. The first row of `population` counts from the last row before the checkpoint.
 
     Args:
         folder: Folder of the parent, which is only read.
@@ -137,6 +148,8 @@ def branch(
         frames: Steps between two frames; None for the parent's.
         display: Shows progress.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
+        seeds: Of several futures of one world, one each; None to go on with the seeds of the old run.
+        of: With `seeds`, the seed of the old run's world; None for its only one.
 
     Returns:
         The manifest of the new run as it was saved at the end.
@@ -149,8 +162,28 @@ def branch(
         MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error.
     """
-    plan = plan_branch(folder, out, overrides, at, steps, threads, frames, checkpoint_seconds)
+    plan = plan_branch(folder, out, overrides, at, steps, threads, frames, checkpoint_seconds, seeds, of)
     return start_branch(plan, display)
+
+
+def _world_of(old: Manifest, of: int | None, config: Config, *, futures: bool) -> int | None:
+    """The index of the world that has several futures; None where each world only goes on.
+
+    Raises:
+        ArgumentError: There is no such world, it must be named, or its obstacles follow from its seed.
+    """
+    if not futures:
+        if of is not None:
+            raise ArgumentError(f"of = {of}: names the world that has several futures: give their seeds, too")
+        return None
+    if config.obstacle.count:
+        raise ArgumentError("seeds: the places of obstacles follow from a world's seed, so it cannot have another one")
+    if of is None and len(old.seeds) == 1:
+        return 0
+    if of not in old.seeds:
+        said = "the run has several worlds: name one" if of is None else "the run has no such world"
+        raise ArgumentError(f"of = {of}: {said} of the seeds {', '.join(map(str, old.seeds))}")
+    return old.seeds.index(of)
 
 
 def _check_shape(config: Config, changed: Config) -> None:

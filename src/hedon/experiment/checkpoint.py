@@ -14,7 +14,7 @@ from hedon.experiment.device import EMULATED, device_problem, is_device
 from hedon.experiment.recorder import Start
 from hedon.experiment.sample import PopulationSampler
 from hedon.experiment.simulation import BACKEND_VARIABLE, Simulation
-from hedon.record.checkpoint import Checkpoint, CheckpointHead
+from hedon.record.checkpoint import Checkpoint, CheckpointHead, Sampled
 from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS
 
@@ -87,8 +87,14 @@ def same_backend(backend: str | None) -> str:
     return asked or (known[0] if known else backend or "")
 
 
-def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
+def restore(simulation: Simulation, checkpoint: Checkpoint, name: str, only: int | None = None) -> Start:
     """Puts the worlds of a checkpoint into a simulation, and checks that they are as they were saved.
+
+    Args:
+        simulation: With the seeds by which the worlds go on.
+        checkpoint: Of as many worlds.
+        name: Of the checkpoint, for errors.
+        only: Index of the world that all worlds of the simulation become; None if each becomes its own.
 
     Returns:
         Where the simulation now is.
@@ -97,21 +103,23 @@ def restore(simulation: Simulation, checkpoint: Checkpoint, name: str) -> Start:
         RecordError: The simulation cannot use the arrays. Do not use the simulation after that.
     """
     head = checkpoint.head
-    species = len(simulation.config.species)
-    for world, digest in zip(simulation.worlds, head.digests, strict=True):
+    species, sampled = len(simulation.config.species), list[Sampled]()
+    for world in simulation.worlds:
+        index = world.index if only is None else only
         try:
-            simulation.engine.restore(world.index, checkpoint.world(world.index))
+            simulation.engine.restore(world.index, checkpoint.world(index))
         except ValueError as error:
-            raise RecordError(f"{name} does not fit: world {world.index}: {error}") from None
+            raise RecordError(f"{name} does not fit: world {index}: {error}") from None
         now = [PopulationSampler(world, i).since for i in range(species)]
-        then = head.sampled[world.index * species : (world.index + 1) * species]
+        then = head.sampled[index * species : (index + 1) * species]
+        sampled += then
         same_names = [(each.counters.keys(), len(each.eaten)) for each in now] == [
             (each.counters.keys(), len(each.eaten)) for each in then
         ]
-        if world.digest() != digest or not same_names or not (world.extinct or world.step == head.step):
-            raise RecordError(f"{name} is damaged: world {world.index} is not as it was saved")
+        if world.digest() != head.digests[index] or not same_names or not (world.extinct or world.step == head.step):
+            raise RecordError(f"{name} is damaged: world {index} is not as it was saved")
     checkpoint.arrays.clear()
-    return Start(head.step, head.run_seconds, head.sampled)
+    return Start(head.step, head.run_seconds, tuple(sampled))
 
 
 def _text(value: object) -> str:

@@ -198,11 +198,37 @@ class Simulation(Cloned):
             EngineError: There is no room for the initial agents or foods of a world.
         """
         self._require_free("reset")
+        for world, seed in zip(self.worlds, self._seeds_of(seeds), strict=True):
+            self.engine.reset(world.index, seed)
+
+    def _seeds_of(self, seeds: Any) -> tuple[int, ...]:
+        """One seed per world. ArgumentError: they are not."""
         wanted = seed_list(seeds, MAX_WORLD_SEED)
         if len(wanted) != len(self.worlds):
             raise ArgumentError(f"seeds: there must be {len(self.worlds)}, one per world, not {len(wanted)}")
+        return wanted
+
+    def reseed(self, seeds: Sequence[int]) -> None:
+        """Gives all worlds other chances from now on: the same agents, genes, networks and food, another future.
+
+        Deaths that nobody has read yet (`World.deaths`) are forgotten.
+
+        Args:
+            seeds: One per world, each in [0, 2^64).
+
+        Raises:
+            ArgumentError: It is no list of seeds, there are more or fewer than worlds, or worlds have obstacles, whose
+                places follow from the seed.
+            EngineError: A world has stopped at a fault.
+        """
+        self._require_free("reseed")
+        wanted = self._seeds_of(seeds)
+        if self.config.obstacle.count:
+            raise ArgumentError("reseed: the places of obstacles follow from a world's seed: these worlds have some")
         for world, seed in zip(self.worlds, wanted, strict=True):
+            kept = self.engine.save(world.index)
             self.engine.reset(world.index, seed)
+            self.engine.restore(world.index, kept)
 
     def save(self) -> bytes:
         """All worlds as they are now, with their seeds: what `restore` goes on from with the same bits.

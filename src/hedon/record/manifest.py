@@ -102,11 +102,14 @@ class Parent:
         folder: name of the parent's folder.
         config_digest: digest of the parent's config.
         step: step of the checkpoint that the branch started from [step].
+        seed: of the parent's world that all worlds of the branch go on from, each with a seed of its own; None if each
+            world goes on with its own past and seed.
     """
 
     folder: str
     config_digest: str
     step: int
+    seed: int | None = None
 
 
 @dataclass(frozen=True)
