@@ -22,6 +22,7 @@ def make(
     backend: str = "",
     record: Path | str | None = None,
     frames: int = 0,
+    world: bytes | None = None,
     overrides: Iterable[str] = (),
 ) -> VectorEnv:
     """Makes worlds that a program drives, as arrays: how other programs train agents in hedon.
@@ -46,6 +47,8 @@ def make(
         record: Folder for what `hedon run` would write, which reports, analyses and the page then read; None for none.
             Recorded worlds cannot be begun again. Call `close` at the end, or use `with`.
         frames: Steps of the worlds between two frames of the records, for the page; 0 for none.
+        world: What `VectorEnv.save` gave of one world with the same config, driven in the same way. All worlds begin as
+            it was, and do so again at each reset; from there each goes its own way by its seed.
         overrides: Settings that differ from those of the preset or file, as for `load_config`; of a `Config` use
             `Config.with_`.
 
@@ -57,5 +60,5 @@ def make(
     """
     config = loaded(config, overrides)
     return VectorEnv(
-        config, worlds, seed, species, actions, repeat, max_steps, render_mode, threads, backend, record, frames
+        config, worlds, seed, species, actions, repeat, max_steps, render_mode, threads, backend, record, frames, world
     )

@@ -49,6 +49,7 @@ class VectorEnv(Cloned):
         backend: As in `hedon.Simulation`.
         record: Folder for the records of the worlds.
         frames: Steps of the worlds between two frames of the records.
+        world: The saved world that all begin as.
 
     Attributes:
         config: The config, with the policy `external` for the species that are driven.
@@ -86,6 +87,7 @@ class VectorEnv(Cloned):
         backend: str = "",
         record: Path | str | None = None,
         frames: int = 0,
+        world: bytes | None = None,
     ) -> None:
         names = driven(config, species)
         seeds = world_seeds(seed, integer("worlds", worlds, 1, MAX_WORLDS))
@@ -99,6 +101,9 @@ class VectorEnv(Cloned):
             raise ArgumentError(f"frames = {brief(repr(frames))}: give record, the folder for them, too")
         texts = tuple(rule.source for rule in found)
         simulation = Simulation(pinned(config, found) if found else config, seeds, threads, backend, texts)
+        if world is not None and record is not None:
+            raise ArgumentError("record: records begin with worlds, and these go on from a saved one: leave one out")
+        self._start = None if world is None else simulation._become(world)
         self._made(simulation, names, form)
         self._open(np.ones(len(seeds), np.bool_))
         if record is not None:
@@ -203,6 +208,8 @@ class VectorEnv(Cloned):
             seeds = tuple(next(drawn) if begins else 0 for begins in mask)
         for i in np.flatnonzero(mask).tolist():
             self.simulation.engine.reset(i, seeds[i])
+            if self._start is not None:
+                self.simulation.engine.restore(i, self._start)
         self._open(mask)
         self._fresh = False
         if self.render_mode == "human":
@@ -339,6 +346,7 @@ class VectorEnv(Cloned):
 
     def _given(self) -> dict[str, Any]:
         given = {"repeat": self.repeat, "max_steps": self.max_steps, "render_mode": self.render_mode}
+        given["_start"] = self._start
         return {**given, "about": self._about(), "added": self._added()}
 
     def _go_on(self, simulation: Simulation, about: Any, saved: bytes, added: dict[str, Any], **given: Any) -> None:

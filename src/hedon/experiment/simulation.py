@@ -309,6 +309,26 @@ class Simulation(Cloned):
                 raise ArgumentError(f"saved: these worlds were saved {what}{said}")
         return more
 
+    def _become(self, saved: Any) -> dict[str, Any]:
+        """Makes all worlds the only saved one, each with its own seed.
+
+        Returns:
+            The arrays of that world, for `_engine.Simulation.restore`.
+
+        Raises:
+            ArgumentError: It is something else, or these worlds have obstacles.
+        """
+        if self.config.obstacle.count:
+            raise ArgumentError("world: the places of obstacles follow from a world's seed: these worlds have some")
+        one = type(self).__new__(type(self))
+        one._begin(self._given, (0,), 1, self._backend, self.rules)
+        one._unpack(saved)
+        one._restore(saved)
+        arrays = one.engine.save(0)
+        for world in self.worlds:
+            self.engine.restore(world.index, arrays)
+        return arrays
+
     def _restore(self, saved: bytes) -> None:
         try:
             self.engine.unpack(saved)
