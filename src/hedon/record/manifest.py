@@ -143,7 +143,8 @@ class Manifest:
         food_colors: color per food kind for figures, "#rrggbb"; empty for the default colors.
         frames: steps between two frames; 0 for no frames [step].
         sessions: one for each time that the run was started or resumed.
-        parent: for a branch, the run that it started from: its folder, config_digest and step, and the seed of the world that has several futures, or null.
+        parent: for a branch, the run that it started from: its folder, config_digest and step, and the seed of
+            the world that has several futures, or null.
         world_digests: per world, the digest of its last state, as `World.digest()` gives it; empty until the end.
         records_digest: digest of all rows of all tables, no matter which parts hold them; None until the end.
         fault: the engine's message if the run stopped at a fault; None otherwise.
