@@ -7,7 +7,7 @@ BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
 # Rules in Python are compiled by Numba, some 190 MB, and videos by ffmpeg, 30 MB: only the tests install them. Long tests
 # make clusters of Ray, 200 MB (80 MB to download), S3 servers, and wheels.
 EXTRA := --extra rules --extra video
-LONG := $(EXTRA) --extra ray --extra remote --group store --group viewer --group cuda --group wheel
+LONG := $(EXTRA) --extra ray --extra remote --group store --group tracker --group viewer --group cuda --group wheel
 # One more than the processors that this may use: tests wait for browsers and for processes a fifth of the time.
 WORKERS = $(shell $(PYTHON) -c 'import os; print(len(getattr(os, "sched_getaffinity", lambda _: range(os.cpu_count()))(0)) + 1)')
 # What the site is made with.

@@ -121,7 +121,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
 
     first = next(remote.batches())
     with pytest.raises(MachineDiedError):
-        batch_job(url, remote, first, folder / "one machine", 0.0).make(1, Stopping())
+        batch_job(url, remote, first, folder / "one machine", 0.0).make(1, Stopping().update)
     assert far.names("state") == [f"{first.name}.zip"]
     assert far.names("results") == []
     begun: list[int] = []
@@ -132,7 +132,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
         def update(self, moment: Moment) -> None:
             begun.append(moment.first)
 
-    assert batch_job(url, remote, first, folder / "another", 1e9).make(1, Watching()) == "finished"
+    assert batch_job(url, remote, first, folder / "another", 1e9).make(1, Watching().update) == "finished"
     assert begun[0] > 0, "it was to go on from the state"
     assert far.names("state") == []
     for batch in remote.batches():

@@ -191,16 +191,16 @@ def _killed(trial: Trial) -> None:
 
 
 def _run_until_killed(trial: Trial, step: int) -> None:
-    run(trial.plan("killed", checkpoint_seconds=0.0), _Death(step))
+    run(trial.plan("killed", checkpoint_seconds=0.0), [_Death(step)])
 
 
 class _Death:
-    """A display that kills its process at the first moment from a step on."""
+    """A callback that kills its process at the first moment from a step on."""
 
     def __init__(self, step: int) -> None:
         self.step = step
 
-    def update(self, moment: Moment) -> None:
+    def __call__(self, moment: Moment) -> None:
         if moment.step >= self.step:
             os.kill(os.getpid(), signal.SIGKILL)
 

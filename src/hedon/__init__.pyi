@@ -1,3 +1,4 @@
+from . import callback as callback
 from . import env as env
 from .config import Config as Config
 from .config import ConfigError as ConfigError
@@ -11,6 +12,7 @@ from .error import EngineError as EngineError
 from .error import HedonError as HedonError
 from .experiment.branch import branch as branch
 from .experiment.memory import MemoryNeedError as MemoryNeedError
+from .experiment.plan import Moment as Moment
 from .experiment.plan import RunPlan as RunPlan
 from .experiment.resume import resume as resume
 from .experiment.run import run as run

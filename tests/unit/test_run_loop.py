@@ -45,7 +45,7 @@ def test_deaths_are_kept_however_many_a_window_has(tmp_path):
 
 def test_the_last_thing_shown_is_the_last_row_also_within_a_window(tmp_path):
     display = Shown()
-    run(RunPlan(load_config("baseline", overrides=BRIEF), (1,), 500, tmp_path / "run", threads=1), display)
+    run(RunPlan(load_config("baseline", overrides=BRIEF), (1,), 500, tmp_path / "run", threads=1), [display.update])
     row = pl.read_parquet(tmp_path / "run" / "population" / "*.parquet").sort("step").row(-1, named=True)
     assert (display.last.step, row["step"]) == (500, 500)
     assert [moment.step for moment in display.moments].count(500) == 1
@@ -63,7 +63,7 @@ def test_of_several_species_each_is_shown_with_the_step_at_which_it_died_out(tmp
         *("species.prey.hazard.kappa=0.01", "species.predator.hazard.kappa=0.2"),
     )
     display = Shown()
-    run(RunPlan(load_config("predator", overrides=settings), (1,), 500, tmp_path / "run", threads=1), display)
+    run(RunPlan(load_config("predator", overrides=settings), (1,), 500, tmp_path / "run", threads=1), [display.update])
     dead = (
         pl.read_parquet(tmp_path / "run" / "agents" / "*.parquet").group_by("species").agg(pl.col("death_step").max())
     )

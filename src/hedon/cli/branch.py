@@ -53,4 +53,4 @@ def branch(
     futures = None if seeds is None else parse_seeds(seeds, "--seeds")
     plan = plan_branch(run, out, overrides or (), at, steps, threads, frames, checkpoint, futures, of)
     begun = f" from step {plan.parent.step:,}"
-    run_and_report(plan.run, lambda display: start_branch(plan, display), begun, report=report)
+    run_and_report(plan.run, lambda callback: start_branch(plan, [callback]), begun, report=report)

@@ -94,7 +94,7 @@ def _check(runs: list[Path], *, replay: bool, threads: int) -> None:
 
             opened = open_run(run)
             with RunDisplay(make_console(stderr=True), opened.columns, opened.manifest.seeds) as display:
-                found, note = replay_run(run, display=display)
+                found, note = replay_run(run, callbacks=[display.update])
             findings += found
             notes.append(note)
         elif replay:

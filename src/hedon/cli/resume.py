@@ -36,5 +36,5 @@ def resume(
         for note in found.notes:
             typer.echo(f"hedon: note: {note}", err=True)
         run_and_report(
-            found.plan, lambda display: continue_run(found, display), f" from step {found.step:,}", report=report
+            found.plan, lambda callback: continue_run(found, [callback]), f" from step {found.step:,}", report=report
         )

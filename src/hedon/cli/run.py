@@ -14,7 +14,7 @@ from hedon.record.folder import CHECKPOINT_SECONDS, require_no_run
 from hedon.text import brief, command_word, count, printable
 
 if TYPE_CHECKING:
-    from hedon.experiment.plan import Display, RunPlan
+    from hedon.experiment.plan import Callback, RunPlan
     from hedon.record.manifest import Manifest
 
 DEFAULT_STEPS = 204_800
@@ -97,10 +97,10 @@ def run(
     plan = RunPlan(
         config, world_seeds, steps, folder, threads, frames, checkpoint, begin_with, act_by, backend or "", kept
     )
-    run_and_report(plan, lambda display: run_plan(plan, display), report=report)
+    run_and_report(plan, lambda callback: run_plan(plan, [callback]), report=report)
 
 
-def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun: str = "", *, report: bool) -> None:
+def run_and_report(plan: "RunPlan", go: Callable[["Callback"], "Manifest"], begun: str = "", *, report: bool) -> None:
     """Prints what will be run, shows progress while it runs, and reports."""
     from hedon.cli.display.run import RunDisplay, duration
     from hedon.experiment.interrupt import interrupted_code
@@ -113,7 +113,7 @@ def run_and_report(plan: "RunPlan", go: Callable[["Display"], "Manifest"], begun
         soft_wrap=True,
     )
     with RunDisplay(console, columns_of(config), plan.seeds) as display:
-        manifest = go(display)
+        manifest = go(display.update)
     for seed, extinct in zip(plan.seeds, manifest.extinct_steps, strict=True):
         if extinct is not None:
             console.print(f"The world of seed {seed} died out at step {extinct:,}.")

@@ -22,7 +22,7 @@ from hedon.ensemble.error import EnsembleError
 from hedon.ensemble.plan import Batch, SweepPlan, load_config_of, load_rules
 from hedon.ensemble.row import world_rows
 from hedon.ensemble.store import Store
-from hedon.experiment.plan import Display, Moment, RunPlan
+from hedon.experiment.plan import Callback, Moment, RunPlan
 from hedon.experiment.resume import make
 from hedon.measure.summary import summarize
 from hedon.record.error import InUseError, RecordError
@@ -92,7 +92,7 @@ class BatchJob:
         settings = ", ".join(f"{name} = {format_value(value)}" for name, value in self.condition.settings.items())
         return f"{settings or 'all settings'}, seed {', '.join(map(str, self.batch.seeds))}"
 
-    def make(self, threads: int, display: Display | None) -> str:
+    def make(self, threads: int, callback: Callback | None) -> str:
         """Makes the batch, from where it is, and writes its result.
 
         Returns:
@@ -110,7 +110,7 @@ class BatchJob:
         rules, seconds = load_rules(store, config), self.checkpoint_seconds
         plan = RunPlan(config, batch.seeds, self.steps, self.folder, threads, 0, seconds, rules=rules)
         _fetch_state(store, self)
-        manifest = _make(plan, _Carrying(store, self, display) if store.folder is None else display)
+        manifest = _make(plan, _Carrying(store, self, callback).update if store.folder is None else callback)
         if manifest.status != "finished":
             _send_state(store, self)
             return manifest.status
@@ -141,15 +141,15 @@ def batch_job(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkp
     return BatchJob(location, batch, condition, changed, plan.steps, plan.keep, folder, checkpoint_seconds)
 
 
-def _make(plan: RunPlan, display: Display | None) -> Manifest:
+def _make(plan: RunPlan, callback: Callback | None) -> Manifest:
     """Goes on with the run of a batch; where it was left so damaged that this cannot be, begins again."""
     try:
-        return make(plan, display)
+        return make(plan, () if callback is None else (callback,))
     except RecordError as error:
         if isinstance(error, InUseError) or not plan.out.exists() or checkpoint_paths(plan.out):
             raise
         shutil.rmtree(plan.out)
-        return make(plan, display)
+        return make(plan, () if callback is None else (callback,))
 
 
 def _keep(store: Store, job: BatchJob, run: Run) -> None:
@@ -172,16 +172,16 @@ def _keep(store: Store, job: BatchJob, run: Run) -> None:
 class _Carrying:
     """Sends the state of a run to the store when it has a new checkpoint, and passes moments on."""
 
-    def __init__(self, store: Store, job: BatchJob, display: Display | None) -> None:
-        self._store, self._job, self._display = store, job, display
+    def __init__(self, store: Store, job: BatchJob, callback: Callback | None) -> None:
+        self._store, self._job, self._callback = store, job, callback
         self._sent = _newest(job.folder)
 
     def update(self, moment: Moment) -> None:
         if (newest := _newest(self._job.folder)) != self._sent:
             self._sent = newest
             _send_state(self._store, self._job)
-        if self._display is not None:
-            self._display.update(moment)
+        if self._callback is not None:
+            self._callback(moment)
 
 
 def _wait_for_folder(folder: Path) -> None:

@@ -14,7 +14,7 @@ from typing import Protocol
 
 from hedon.error import HedonError
 from hedon.experiment.interrupt import SIGNALS
-from hedon.experiment.plan import Display, Moment
+from hedon.experiment.plan import Callback, Moment
 
 
 class Job(Protocol):
@@ -56,7 +56,7 @@ class Job(Protocol):
         """What its worlds are, in a few words."""
         ...
 
-    def make(self, threads: int, display: Display | None) -> str:
+    def make(self, threads: int, callback: Callback | None) -> str:
         """Begins, continues, or only reads its run.
 
         Returns:
@@ -108,7 +108,7 @@ def work(job: Job, threads: int, link: Connection) -> None:
         signal.signal(number, signal.SIG_IGN)
     _leave_terminal()
     Thread(target=_listen, args=(link,), daemon=True).start()
-    outcome = attempt(job, threads, _Teller(link))
+    outcome = attempt(job, threads, _Teller(link).update)
     with suppress(OSError):  # the parent may have ended; what is on disk says it too
         link.send(outcome)
 
@@ -130,9 +130,9 @@ def _listen(link: Connection) -> None:
             _thread.interrupt_main(link.recv())
 
 
-def attempt(job: Job, threads: int, display: Display | None = None) -> Outcome:
+def attempt(job: Job, threads: int, callback: Callback | None = None) -> Outcome:
     """Does a job in this process. A fault of the job is an outcome."""
     try:
-        return Outcome(job.make(threads, display))
+        return Outcome(job.make(threads, callback))
     except HedonError as error:
         return Outcome("failed", str(error))

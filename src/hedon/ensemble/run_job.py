@@ -8,7 +8,7 @@ from pathlib import Path
 from hedon.config import Config, digest
 from hedon.ensemble.demand import Demand, setting_name
 from hedon.ensemble.ensemble import Ensemble, steps_reached
-from hedon.experiment.plan import Display, RunPlan, free_folder, seed_span
+from hedon.experiment.plan import Callback, RunPlan, free_folder, seed_span
 from hedon.experiment.resume import make, require_setting
 from hedon.record.folder import CHECKPOINT_SECONDS, checkpoint_paths
 
@@ -56,9 +56,9 @@ class RunJob:
         """Its config and seeds."""
         return f"{self.plan.config.name}, seed {', '.join(map(str, self.plan.seeds))}"
 
-    def make(self, threads: int, display: Display | None) -> str:
+    def make(self, threads: int, callback: Callback | None) -> str:
         """Begins, continues, or only reads the run; see `hedon.experiment.resume.make`."""
-        return make(replace(self.plan, threads=threads), display).status
+        return make(replace(self.plan, threads=threads), () if callback is None else (callback,)).status
 
 
 def run_jobs(ensemble: Ensemble, checkpoint_seconds: float = CHECKPOINT_SECONDS) -> list[RunJob]:

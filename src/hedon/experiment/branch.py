@@ -13,7 +13,7 @@ from hedon.experiment import argument
 from hedon.experiment.checkpoint import check_head, require_undriven, restore, same_backend
 from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
-from hedon.experiment.plan import Display, RunPlan, free_folder
+from hedon.experiment.plan import Callback, RunPlan, free_folder, together
 from hedon.experiment.run import start_run
 from hedon.experiment.session import first_manifest
 from hedon.experiment.simulation import Simulation
@@ -109,14 +109,14 @@ def plan_branch(
     return BranchPlan(plan, parent, checkpoint, same_backend(old.backend), only)
 
 
-def start_branch(plan: BranchPlan, display: Display | None = None) -> Manifest:
+def start_branch(plan: BranchPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
     """Begins a branch that `plan_branch` planned; see `branch`."""
     with count_interrupts() as interrupted:
         require_memory(plan.run.config, len(plan.run.seeds), plan.run.threads)
         simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.backend, plan.run.rules)
         start = restore(simulation, plan.checkpoint, f"the checkpoint of {plan.parent.folder}", plan.only)
         manifest = replace(first_manifest(plan.run, simulation, start.step), parent=plan.parent)
-        return start_run(simulation, plan.run, manifest, replace(start, seconds=0.0), display, interrupted)
+        return start_run(simulation, plan.run, manifest, replace(start, seconds=0.0), together(callbacks), interrupted)
 
 
 def branch(
@@ -127,7 +127,7 @@ def branch(
     steps: int | None = None,
     threads: int = 0,
     frames: int | None = None,
-    display: Display | None = None,
+    callbacks: Iterable[Callback] = (),
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
     seeds: Iterable[int] | None = None,
     of: int | None = None,
@@ -146,7 +146,7 @@ def branch(
         steps: Total steps of each world, including those before the checkpoint; None for the parent's.
         threads: Threads to use; 0 for all processors. Changes no result.
         frames: Steps between two frames; None for the parent's.
-        display: Shows progress.
+        callbacks: Functions of a `Moment`, called about five times a second and at the end.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
         seeds: Of several futures of one world, one each; None to go on with the seeds of the old run.
         of: With `seeds`, the seed of the old run's world; None for its only one.
@@ -163,7 +163,7 @@ def branch(
         EngineError: A world reports an error.
     """
     plan = plan_branch(folder, out, overrides, at, steps, threads, frames, checkpoint_seconds, seeds, of)
-    return start_branch(plan, display)
+    return start_branch(plan, callbacks)
 
 
 def _world_of(old: Manifest, of: int | None, config: Config, *, futures: bool) -> int | None:

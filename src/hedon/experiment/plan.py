@@ -1,9 +1,8 @@
-"""The plan of a run: what to compute, where its records go, and what its progress display shows."""
+"""The plan of a run: what to compute, where its records go, and what callbacks get."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from hedon.config.config import Config, validated
 from hedon.error import ArgumentError
@@ -24,6 +23,7 @@ from hedon.record.folder import CHECKPOINT_SECONDS
 from hedon.record.founder import Founders
 from hedon.record.manifest import RuleSource
 from hedon.record.network import Networks
+from hedon.text import brief
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -102,14 +102,15 @@ class RunPlan:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """The state of a run at one moment, for a progress display.
+    """The state of a run at one moment: what callbacks get, about five times a second and at the end.
 
     Attributes:
         first: Step at which the run began, or was last continued.
         step: Steps completed.
         steps: Total steps of each world.
         seconds: Time since the first step after `first` [s].
-        rows: The last row of the table `population` of each world and species, world by world.
+        rows: The last row of the table `population` of each world and species, world by world: numbers by column, of
+            the interval that ends at its own `step`.
         extinct: For each of these rows the step at which the species died out there; None while it lives, and where it
             was gone before `first`, which its row shows.
         window: Steps of a window; agents learn at its end.
@@ -124,12 +125,30 @@ class Moment:
     window: int
 
 
-class Display(Protocol):
-    """A progress display."""
+Callback = Callable[[Moment], object]
+"""What hears how a run goes on; an exception that it raises ends the run."""
 
-    def update(self, moment: Moment) -> None:
-        """Shows a moment; called about five times a second."""
-        ...
+
+def together(callbacks: Iterable[Callback]) -> Callback | None:
+    """Several callbacks as one, in their order; None for none.
+
+    Raises:
+        ArgumentError: One is not a function of a moment.
+    """
+    if not isinstance(callbacks, Iterable):
+        raise ArgumentError(f"callbacks: must be a list of functions of a moment, not {brief(repr(callbacks))}")
+    every = list(callbacks)
+    for each in every:
+        if not callable(each):
+            raise ArgumentError(f"callbacks: must be functions of a moment, not {brief(repr(each))}")
+    if len(every) < 2:
+        return every[0] if every else None
+
+    def call(moment: Moment) -> None:
+        for each in every:
+            each(moment)
+
+    return call
 
 
 def _without_caller(config: Config) -> Config:

@@ -1,7 +1,7 @@
 """Computes a run again, and compares its records and the worlds at its end."""
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import polars as pl
@@ -9,13 +9,15 @@ import polars as pl
 from hedon.check.finding import Finding
 from hedon.error import HedonError
 from hedon.experiment.branch import plan_branch, start_branch
-from hedon.experiment.plan import Display
+from hedon.experiment.plan import Callback
 from hedon.record.folder import checkpoint_paths
 from hedon.record.manifest import Manifest
 from hedon.record.reader import Run, open_run
 
 
-def replay_run(folder: Path | str, threads: int = 0, display: Display | None = None) -> tuple[tuple[Finding, ...], str]:
+def replay_run(
+    folder: Path | str, threads: int = 0, callbacks: Iterable[Callback] = ()
+) -> tuple[tuple[Finding, ...], str]:
     """Computes a run again, from its oldest checkpoint to its end, and compares.
 
     Returns:
@@ -36,7 +38,7 @@ def replay_run(folder: Path | str, threads: int = 0, display: Display | None = N
     with tempfile.TemporaryDirectory(prefix="hedon-replay-") as place:
         try:
             again = Path(place) / "run"
-            manifest = start_branch(plan_branch(folder, again, at=start, steps=steps, threads=threads), display)
+            manifest = start_branch(plan_branch(folder, again, at=start, steps=steps, threads=threads), callbacks)
             findings = tuple(_compare(run, open_run(again), manifest, start))
         except HedonError as error:
             return (Finding(f"checkpoint of step {start:,}", f"cannot be computed again: {error}"),), "not compared"

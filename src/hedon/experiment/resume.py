@@ -1,7 +1,7 @@
 """Continues a run that was interrupted, killed, or finished; with the same bits as if it had never stopped."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,7 @@ from hedon.experiment.checkpoint import check_head, require_undriven, restore, s
 from hedon.experiment.device import device_problem, is_device
 from hedon.experiment.interrupt import count_interrupts
 from hedon.experiment.memory import require_memory
-from hedon.experiment.plan import Display, RunPlan
+from hedon.experiment.plan import Callback, RunPlan, together
 from hedon.experiment.recorder import Start
 from hedon.experiment.rule import changed_files
 from hedon.experiment.run import advance, run, set_initial_state
@@ -110,7 +110,7 @@ def resume(
     folder: Path | str,
     steps: int | None = None,
     threads: int = 0,
-    display: Display | None = None,
+    callbacks: Iterable[Callback] = (),
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
 ) -> Manifest:
     """Continues a run from its newest undamaged checkpoint. Later records are removed and computed again.
@@ -119,7 +119,7 @@ def resume(
         folder: Of the run.
         steps: Steps of each world in all; None for those of the last session.
         threads: Threads to use; 0 for all processors. Changes no result.
-        display: Shows progress.
+        callbacks: Functions of a `Moment`, called about five times a second and at the end.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
 
     Returns:
@@ -132,10 +132,10 @@ def resume(
         EngineError: A world reports an error.
     """
     with lock(folder, steps, threads, checkpoint_seconds) as found:
-        return continue_run(found, display)
+        return continue_run(found, callbacks)
 
 
-def make(plan: RunPlan, display: Display | None = None) -> Manifest:
+def make(plan: RunPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
     """Makes the run of a plan: begins it, goes on with it, or only reads it where it is finished.
 
     Raises:
@@ -143,13 +143,13 @@ def make(plan: RunPlan, display: Display | None = None) -> Manifest:
         HedonError: As `run` and `resume`.
     """
     if not holds_run(plan.out):
-        return run(plan, display)
+        return run(plan, callbacks)
     require_setting(plan.out, digest(plan.config), plan.seeds)
     manifest = open_run(plan.out).manifest
     if is_finished(manifest, plan.steps):
         return manifest
     steps = max(plan.steps, *manifest.steps_done, 1)
-    return resume(plan.out, steps, plan.threads, display, plan.checkpoint_seconds)
+    return resume(plan.out, steps, plan.threads, callbacks, plan.checkpoint_seconds)
 
 
 def is_finished(manifest: Manifest, steps: int) -> bool:
@@ -178,7 +178,7 @@ def require_setting(folder: Path, config_digest: str, seeds: Sequence[int] | Non
         )
 
 
-def continue_run(found: Resumption, display: Display | None = None) -> Manifest:
+def continue_run(found: Resumption, callbacks: Iterable[Callback] = ()) -> Manifest:
     """Continues a run that `lock` has locked; see `resume`.
 
     Returns:
@@ -203,7 +203,7 @@ def continue_run(found: Resumption, display: Display | None = None) -> Manifest:
         roll_back(plan.out, parts, start.step)
         manifest = next_manifest(found.manifest, plan, simulation, start.step)
         with Writer(plan.out, "", manifest, parts=parts) as writer:
-            return advance(simulation, plan, manifest, writer, start, display, interrupted)
+            return advance(simulation, plan, manifest, writer, start, together(callbacks), interrupted)
 
 
 def _device_notes(manifest: Manifest) -> list[str]:

@@ -1,7 +1,7 @@
 """The host loop: advances a simulation, writes its records and checkpoints, and shows its progress."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import nullcontext, suppress
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from hedon.config.dump import dump_toml
 from hedon.error import ArgumentError, EngineError
 from hedon.experiment.interrupt import Interrupts, count_interrupts
 from hedon.experiment.memory import require_memory
-from hedon.experiment.plan import Display, RunPlan
+from hedon.experiment.plan import Callback, RunPlan, together
 from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
 from hedon.experiment.session import first_manifest, last_manifest
@@ -27,32 +27,33 @@ PIECE_SECONDS = 0.2
 """Longest time in the engine between two checks for Ctrl-C [s]; a device is not disturbed within a window."""
 
 
-def run(plan: RunPlan, display: Display | None = None) -> Manifest:
-    """Runs a plan and writes its records; prints nothing if no display is given.
+def run(plan: RunPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
+    """Runs a plan and writes its records; prints nothing.
 
     Ctrl-C or SIGTERM ends it after the current window, a second one immediately; both keep all results.
     `hedon.experiment.resume.resume` continues it, even if it was killed.
 
     Args:
         plan: What to run, and where its records go.
-        display: Shows progress.
+        callbacks: Functions of a `Moment`, called about five times a second and at the end.
 
     Returns:
         The manifest as it was saved at the end.
 
     Raises:
-        ArgumentError: The plan is not a `RunPlan`.
+        ArgumentError: The plan is not a `RunPlan`, or a callback not a function.
         RecordError: The folder holds a run already, is in use, or cannot be written.
         MemoryNeedError: It needs more memory than there is.
         EngineError: A world reports an error; what was recorded before stays readable.
     """
     if not isinstance(plan, RunPlan):
         raise ArgumentError(f"plan: must be a RunPlan, not {brief(repr(plan))}")
+    callback = together(callbacks)
     with count_interrupts() as interrupted:
         require_memory(plan.config, len(plan.seeds), plan.threads)
         simulation = Simulation(plan.config, plan.seeds, plan.threads, plan.backend, plan.rules)
         set_initial_state(simulation, plan)
-        return start_run(simulation, plan, first_manifest(plan, simulation), Start(), display, interrupted)
+        return start_run(simulation, plan, first_manifest(plan, simulation), Start(), callback, interrupted)
 
 
 def set_initial_state(simulation: Simulation, plan: RunPlan) -> None:
@@ -73,7 +74,7 @@ def start_run(
     plan: RunPlan,
     manifest: Manifest,
     start: Start,
-    display: Display | None,
+    callback: Callback | None,
     interrupted: Interrupts,
 ) -> Manifest:
     """Locks and makes the folder of a run, and runs it; see `run`.
@@ -86,7 +87,7 @@ def start_run(
         EngineError: A world reports an error.
     """
     with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest, beginning=_beginning(plan)) as writer:
-        return advance(simulation, plan, manifest, writer, start, display, interrupted)
+        return advance(simulation, plan, manifest, writer, start, callback, interrupted)
 
 
 def _beginning(plan: RunPlan) -> dict[str, bytes]:
@@ -105,7 +106,7 @@ def advance(
     manifest: Manifest,
     writer: Writer,
     start: Start,
-    display: Display | None,
+    callback: Callback | None,
     interrupted: Interrupts,
 ) -> Manifest:
     """Advances a simulation to the end of its plan, or until it is interrupted or extinct, and records it; see `run`.
@@ -135,13 +136,13 @@ def advance(
             if interrupted.count > heard or (step % window == 0 and recorder.checkpoint_due):
                 recorder.checkpoint(step, seconds)
                 heard = interrupted.count
-            if display is not None and step < plan.steps:  # the last moment is shown below, with its own rows
-                display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
+            if callback is not None and step < plan.steps:  # the last moment is shown below, with its own rows
+                callback(recorder.moment(step, plan.steps, seconds - start.seconds))
         # First the checkpoint, then the rows of a window that may be incomplete: a resumed run removes those.
         recorder.checkpoint(step, seconds)
         recorder.interval()
-        if display is not None:
-            display.update(recorder.moment(step, plan.steps, seconds - start.seconds))
+        if callback is not None:
+            callback(recorder.moment(step, plan.steps, seconds - start.seconds))
         status = "finished" if simulation.extinct or step == plan.steps else "interrupted"
     except EngineError as error:
         manifest = replace(manifest, fault=str(error))
