@@ -78,6 +78,7 @@ MORE = (
     "repository/test_docs.py",
     "repository/test_notebooks.py",
     "repository/test_site.py",
+    "repository/test_typing.py",
     "sweep/test_lock.py",
     "sweep/test_store.py",
     "sweep/test_sweep_run.py",

@@ -5,18 +5,32 @@ from typing import Any
 
 from hedon.config.layer import EVERY, settle_genes, settle_stores_and_queries
 from hedon.config.override import parse_path
-from hedon.config.problem import ConfigError, Problem, folded
+from hedon.config.problem import ConfigError, Problem, folded, format_value
 from hedon.config.retired import new_path
 from hedon.config.schema.settings import Settings
 from hedon.config.schema.species import PER_SPECIES, default_path
 from hedon.config.validate import build
 from hedon.error import ArgumentError
-from hedon.text import brief
+from hedon.shown import table_html
+from hedon.text import brief, count
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Config(Settings):
     """One run's settings, of which one can be changed; see `Settings`."""
+
+    def __repr__(self) -> str:
+        return f"<Config {self.name} ({self.fidelity}), {count(len(self._changes()), 'setting')} changed>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the settings that differ from those of the preset."""
+        rows = [[path, _said(old), _said(new)] for path, old, new in self._changes()]
+        return table_html(f"{self.name} ({self.fidelity})", ("setting", self.preset, "here"), rows)
+
+    def _changes(self) -> list[tuple[str, Any, Any]]:
+        from hedon.config.load import changed_settings  # which loads configs
+
+        return changed_settings(self)
 
     @property
     def driven(self) -> tuple[str, ...]:
@@ -60,6 +74,10 @@ def validated(config: Config, origin: str = "config") -> Config:
     if not isinstance(config, Config):
         raise ArgumentError(f"config: must be a Config, as `load_config` gives it, not {brief(repr(config))}")
     return build(Config, asdict(config), origin)
+
+
+def _said(value: Any) -> str:
+    return "(absent)" if value is None else format_value(value)
 
 
 def _put(tables: dict[str, Any], names: list[str], value: Any) -> bool:

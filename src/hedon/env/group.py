@@ -78,6 +78,10 @@ class Group:
         meals: (worlds, meals) int64, what the agents of the species ate in the steps, in the order of `meal_names`.
     """
 
+    def __repr__(self) -> str:
+        worlds, slots = self.ids.shape
+        return f"<Group of {int(self.alive.sum()):,} agents in {worlds:,} worlds of {slots:,} slots>"
+
     actions: Any = Held()
     observations: Any = Held()
     rewards: Any = Held()

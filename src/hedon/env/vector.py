@@ -135,6 +135,9 @@ class VectorEnv(Cloned):
         self._record: Any = None  # also of a copy: it has no records
         self._keep_own("_told", "spaces")
 
+    def __repr__(self) -> str:
+        return f"<VectorEnv driving {' and '.join(self.groups)} in {self.simulation!r}>"
+
     @property
     def observations(self) -> Any:
         """(worlds, slots, entries) float32: see `Group.observations`."""
@@ -228,9 +231,8 @@ class VectorEnv(Cloned):
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """Advances every world by `repeat` steps with these actions.
 
-        It is the same as a call for each of these steps, in which nobody changes an action: rewards and meals are
-        sums, and all births and deaths are counted. Ctrl-C ends it after the step of the worlds that it is in; all
-        arrays are then of that step.
+        It is the same as a call for each of these steps with the same actions: rewards and meals are sums, and all
+        births and deaths are counted. Ctrl-C ends it after the current step; all arrays are then of that step.
 
         Args:
             actions: (worlds, slots, 2): `VectorEnv.actions`, or another array, which is copied there; also all slots as
@@ -345,8 +347,7 @@ class VectorEnv(Cloned):
         self._go_on(simulation, **state)
 
     def _given(self) -> dict[str, Any]:
-        given = {"repeat": self.repeat, "max_steps": self.max_steps, "render_mode": self.render_mode}
-        given["_start"] = self._start
+        given = {name: vars(self)[name] for name in ("repeat", "max_steps", "render_mode", "_start")}
         return {**given, "about": self._about(), "added": self._added()}
 
     def _go_on(self, simulation: Simulation, about: Any, saved: bytes, added: dict[str, Any], **given: Any) -> None:

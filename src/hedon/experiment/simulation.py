@@ -26,7 +26,8 @@ from hedon.experiment.world import World
 from hedon.record.founder import Founders
 from hedon.record.manifest import RuleSource
 from hedon.record.network import NetworkError, Networks, fixed_species
-from hedon.text import brief
+from hedon.shown import table_html
+from hedon.text import brief, count
 
 BACKEND_VARIABLE = "HEDON_BACKEND"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
@@ -118,6 +119,19 @@ class Simulation(Cloned):
     def seeds(self) -> tuple[int, ...]:
         """The seed of each world."""
         return tuple(world.seed for world in self.worlds)
+
+    def __repr__(self) -> str:
+        alive = sum(world.alive for world in self.worlds)
+        return f"<Simulation {self._line()}, {alive:,} alive>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a row for each world."""
+        rows = [[world.seed, f"{world.step:,}", f"{world.alive:,}"] for world in self.worlds]
+        return table_html(self._line(), ("seed", "step", "alive"), rows)
+
+    def _line(self) -> str:
+        step = max(world.step for world in self.worlds)
+        return f"{self.config.name} ({self.config.fidelity}): {count(len(self.worlds), 'world')} at step {step:,}"
 
     def _require_free(self, call: str) -> None:
         """ArgumentError: an environment drives these worlds, and would not know of this call."""

@@ -31,6 +31,9 @@ class World:
         self.config = config
         self._recorded = False
 
+    def __repr__(self) -> str:
+        return f"<World of seed {self.seed} at step {self.step:,}, {self.alive:,} alive>"
+
     def __reduce_ex__(self, protocol: Any) -> Any:
         raise ArgumentError("a world is a view of its simulation: copy or pickle the simulation")
 
