@@ -9,7 +9,7 @@ def test_every_command_is_in_one_group():
     listed = [name for commands in GROUPS.values() for name in commands]
     commands = [each.callback.__name__ for each in app.registered_commands if each.callback]
     groups = [each.name for each in app.registered_groups]
-    assert sorted(listed) == sorted([*commands, *groups])
+    assert sorted(listed) == sorted(map(str, [*commands, *groups]))
     assert len(listed) <= 16
 
 

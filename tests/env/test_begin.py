@@ -50,4 +50,4 @@ def test_a_saved_world_that_cannot_be_one_is_refused(tmp_path):
     with pytest.raises(ArgumentError, match="record: records begin with worlds"):
         make(CONFIG, 2, world=one, record=tmp_path / "run")
     with pytest.raises(ArgumentError, match="must be bytes"):
-        make(CONFIG, 2, world="run")
+        make(CONFIG, 2, world="run")  # pyright: ignore[reportArgumentType]

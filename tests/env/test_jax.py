@@ -144,7 +144,7 @@ def test_states_of_another_shape_or_type_are_refused(part, change):
     _, state = worlds.reset(jax.random.key(0))
     wrong = state._replace(**{part: change(getattr(state, part))})
     with pytest.raises(ArgumentError, match=rf"state\.{part}: must be u?int32 of shape"):
-        worlds.step(jax.random.key(1), wrong, np.zeros((12, 2), np.float32))
+        worlds.step(jax.random.key(1), wrong, jax.numpy.zeros((12, 2)))
 
 
 def test_no_traceback_follows_an_error_that_was_caught():
@@ -212,7 +212,7 @@ def test_without_a_compiler_it_says_so(monkeypatch, tmp_path):
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.delenv("CXX", raising=False)
-    monkeypatch.setattr(module.shutil, "which", lambda name: None)
+    monkeypatch.setattr("shutil.which", lambda name: None)
     with pytest.raises(HedonError, match="needs a C\\+\\+ compiler on first use, and finds none"):
         module._library()
     monkeypatch.setenv("CXX", "false")

@@ -1,5 +1,7 @@
 """Environments without a seed differ from one another, and tell the seeds that they drew."""
 
+from typing import Any
+
 import pytest
 from worlds import QUICK
 
@@ -36,9 +38,11 @@ def test_options_that_are_none_are_named(kind):
 def test_other_arguments_of_a_wrong_type_are_named():
     import numpy as np
 
+    wrong: Any = 5
     with pytest.raises(ArgumentError, match=r"overrides = 5: must be a list of texts"):
-        make("baseline", overrides=5)
+        make("baseline", overrides=wrong)
     with pytest.raises(ArgumentError, match=r"overrides = 5: must be a list of texts"):
-        load_config("baseline", overrides=5)
+        load_config("baseline", overrides=wrong)
+    wrong = np.array(["human", "rgb_array"])
     with pytest.raises(ArgumentError, match="render_mode"):
-        make("baseline", render_mode=np.array(["human", "rgb_array"]))
+        make("baseline", render_mode=wrong)

@@ -8,8 +8,8 @@ from mechanism import BASE, mechanisms
 
 from hedon.config.config import Config
 from hedon.config.field import sections, settings
-from hedon.config.layout import FAMILY_GENES, LEARNING_GENES
 from hedon.config.load import FIDELITIES, PRESETS
+from hedon.config.schema.evolution import FAMILY_GENES, LEARNING_GENES
 from hedon.config.schema.settings import PROVENANCE
 from hedon.config.schema.species import PER_SPECIES, SpeciesConfig
 

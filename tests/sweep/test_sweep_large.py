@@ -11,10 +11,11 @@ from sweep_case import condition_configs, planned, sweep_file
 
 from hedon.config import ConfigError, digest
 from hedon.ensemble.collect import collect
+from hedon.ensemble.condition import DIGITS
 from hedon.ensemble.plan import load_plan
 from hedon.ensemble.store import READERS, Store
 from hedon.experiment.plan import RunPlan
-from hedon.sweep.condition import DIGITS, Loader
+from hedon.sweep.condition import Loader
 from hedon.sweep.read import read_sweep
 
 COUNT = 2_000

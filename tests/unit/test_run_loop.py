@@ -3,7 +3,8 @@
 import polars as pl
 
 from hedon.config.load import load_config
-from hedon.experiment.run import RunPlan, run
+from hedon.experiment.plan import RunPlan
+from hedon.experiment.run import run
 
 # A window in which far more die than the engine's buffer of 16 per slot holds.
 BRIEF = (

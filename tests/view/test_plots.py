@@ -93,6 +93,7 @@ def test_each_weight_has_the_band_of_its_own_founders_and_mutations(unlike, watc
     """Of 4000 neutral genes that the analysis walks, 5 % are beyond the limits that the page has of 400."""
     (world,) = read_worlds([open_run(unlike)])
     tree = walked_pedigree(world)
+    assert tree is not None
     steps = world.population["step"].to_list()
     living = [living_at(tree, step) for step in steps]
     names = dict(zip(LAWS, world.reward_names, strict=True))

@@ -70,7 +70,7 @@ def test_a_weight_stands_before_its_own_drift(tmp_path: Path) -> None:
     figure = draw_histories([row], run.reward_names, run.neutral_names, food_colors(run.food_kinds))
     food, action, neutral = figure.axes
     for axes, middle in ((food, 1.0), (neutral, 0.0)):
-        points = axes.collections[0].get_paths()[0].vertices
+        points = np.asarray(axes.collections[0].get_paths()[0].vertices)
         assert (points[:, 1].min(), points[:, 1].max()) == pytest.approx((middle - 0.2, middle + 0.2))
     assert not action.collections
     assert [text.get_text() for axes in figure.axes for text in axes.texts] == ["no band of drift"]
@@ -80,7 +80,7 @@ def test_a_weight_stands_before_its_own_drift(tmp_path: Path) -> None:
     top, side = (axes for axes in figure.axes if not axes.axison)
     for axes, along, at in ((top, 0, 1.0), (side, 1, -1.0)):
         (outline,) = (patch for patch in axes.patches if not patch.get_fill())
-        points = outline.get_path().vertices
+        points = np.asarray(outline.get_path().vertices)
         assert points[points[:, 1 - along] > 0.5, along].mean() == pytest.approx(at, abs=0.05)
 
 

@@ -28,6 +28,6 @@ def test_sentence_figure_and_summary_are_about_the_same_agents(tmp_path: Path, e
     figures = condition_figures(worlds, {})
     history, weights = next(figures), next(figures)
     line = next(line for line in history.figure.axes[0].lines if line.get_linewidth() == 2.0)
-    assert line.get_ydata()[-1] == pytest.approx(mean, abs=1e-5)
+    assert np.asarray(line.get_ydata())[-1] == pytest.approx(mean, abs=1e-5)
     points = np.asarray(weights.figure.axes[0].collections[0].get_offsets())
     assert (len(points), points[:, 0].mean()) == (rows["alive"][-1], pytest.approx(mean, abs=1e-5))

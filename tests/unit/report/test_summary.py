@@ -68,7 +68,7 @@ def test_worlds_that_died_out_count_as_empty(tmp_path: Path) -> None:
     summary = run_summary(open_run(folder))
     rows = open_run(folder).population()
     ended = rows.filter((pl.col("world") == 1) & (pl.col("step") > 0.9 * 40 * 1024))
-    assert summary["worlds"][1]["alive_mean"] == pytest.approx(ended["agent_steps"].sum() / (0.1 * 40 * 1024))
+    assert summary["worlds"][1]["alive_mean"] == pytest.approx(int(ended["agent_steps"].sum()) / (0.1 * 40 * 1024))
     assert summary["worlds"][1]["mean_energy"] is None
     alive = [world["alive_mean"] for world in summary["worlds"]]
     assert summary["alive_mean"]["mean"] == pytest.approx(sum(alive) / 3), "all three, the extinct one too"

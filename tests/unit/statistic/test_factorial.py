@@ -1,5 +1,6 @@
 import itertools
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -81,7 +82,7 @@ def test_two_cells_are_compared_by_welch() -> None:
     few, many = [3.0, 9.0, -4.0], [1.0, 1.5, 0.5, 1.2, 0.9]
     fit = fit_factorial({(True,): dict(enumerate(few)), (False,): dict(enumerate(many))}, 1)
     (effect,) = fit.effects
-    known = stats.ttest_ind(few, many, equal_var=False)
+    known: Any = stats.ttest_ind(few, many, equal_var=False)
     assert (effect.p, effect.freedom) == pytest.approx((known.pvalue, known.df))
     assert (effect.low, effect.high) == pytest.approx(tuple(known.confidence_interval()))
 

@@ -15,7 +15,7 @@ def test_rank_scores_are_normal() -> None:
 
 
 def test_a_trait_that_cannot_change_has_no_test() -> None:
-    score = rank_score(0.1, np.full(100, np.float32(0.1)), np.random.default_rng(1))
+    score = rank_score(0.1, np.full(100, np.float64(np.float32(0.1))), np.random.default_rng(1))
     assert np.isnan(score)
     assert all(np.isnan(test.p) and test.worlds == 0 for test in score_tests(np.full(5, score)))
 
