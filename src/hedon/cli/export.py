@@ -18,7 +18,7 @@ app = typer.Typer(
 )
 POINTS = 50
 TableFormat = Literal["csv", "parquet", "arrow"]
-TreeFormat = Literal["alife", "newick", "png"]
+TreeFormat = Literal["alife", "newick", "trees", "png"]
 
 Source = Annotated[Path, typer.Argument(metavar="RUN", help="Folder of the run; it is only read.")]
 Out = Annotated[Path | None, typer.Option(help="The new file; by default RUN-WHAT with the format's ending, here.")]
@@ -70,8 +70,8 @@ def phylogeny(
         TreeFormat,
         typer.Option(
             "--format",
-            help="alife, the ALife data standard with all agents and their genes; newick, a tree of the living; or "
-            "png, a picture of it.",
+            help="alife, the ALife data standard with all agents and their genes; newick, a tree of the living; "
+            "trees, a tree sequence for tskit; or png, a picture.",
         ),
     ] = "alife",
     world: World = None,
@@ -86,6 +86,7 @@ def phylogeny(
     \b
     Examples:
       hedon export phylogeny runs/baseline-corrected-s1 --format newick
+      hedon export phylogeny runs/baseline-corrected-s1 --format trees
       hedon export phylogeny runs/baseline-corrected-s1 --format png --color w_action
     """
     from hedon.error import ArgumentError
@@ -102,6 +103,12 @@ def phylogeny(
             write_table(alife_table(found, opened.weight_names).lazy(), "csv", target)
             return
         genes = opened.weight_names
+        if file_format == "trees":
+            from hedon.export.tree_sequence import tree_sequence
+
+            sequence = tree_sequence(found, genes, now)
+            write_new(target, sequence.dump)
+            return
         content = picture(found, now, genes, color) if file_format == "png" else newick(found, now)
         write_new(target, lambda file: file.write(content))
 

@@ -1,0 +1,75 @@
+"""The pedigree of a world as a tree sequence, for tskit and what reads it."""
+
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.descent.genealogy import ALIVE
+from hedon.export.phylogeny import require_tree
+from hedon.export.table import ExportError
+
+LAST_BIRTH = 0.5
+"""How long before the end a birth in the last step is placed [step]: a node must be older than those below it."""
+
+
+def tree_sequence(agents: pl.DataFrame, genes: tuple[str, ...], now: int) -> Any:
+    """The lives of a world as a `tskit.TreeSequence` with one tree.
+
+    A node is a moment of a lineage: the birth of a founder, a birth as the parent lives it, or an agent that lives at
+    the end, which is a sample. Times count back from the end [step]. `simplify()` gives the tree of the living, the one
+    that `newick` writes. Each node belongs to an individual, the agent, whose metadata are its agent_id, the steps of
+    its birth and death, and its genes.
+
+    Args:
+        agents: of one world and species, by agent_id, as `pedigree` gives them.
+        genes: columns that go into the metadata.
+        now: the step at which the pedigree ends.
+
+    Raises:
+        ExportError: tskit is not installed, or children have two parents, so that there is no tree.
+    """
+    try:
+        import tskit
+    except ModuleNotFoundError as error:
+        raise ExportError(f'--format trees needs {error.name}: pip install "hedon[phylogeny]"') from error
+    tree = require_tree(agents)
+    born = np.flatnonzero(tree.parent >= 0)
+    births = born[np.lexsort((tree.birth[born], tree.parent[born]))]  # of each parent, in the order of time
+    parent, living, roots = tree.parent[births], np.flatnonzero(tree.death == ALIVE), np.flatnonzero(tree.parent < 0)
+    tip, root = len(births), len(births) + len(living)  # where these nodes begin
+    first = np.full(tree.size, -1)  # node of each agent's life
+    first[living] = tip + np.arange(len(living))
+    last = first.copy()
+    first[parent[::-1]] = np.arange(len(births))[::-1]
+    follows = np.append(np.where(parent[1:] == parent[:-1], np.arange(1, len(births)), -1), -1)[: len(births)]
+    follows = np.where(follows < 0, last[parent], follows)
+
+    above = np.concatenate([np.arange(len(births)), np.arange(len(births)), root + np.arange(len(roots))])
+    below = np.concatenate([follows, first[births], first[roots]])
+    there = below >= 0
+    when = np.where(tree.birth[births] < now, now - tree.birth[births], LAST_BIRTH)
+    tables = tskit.TableCollection(sequence_length=1.0)
+    tables.time_units = "steps"
+    _set_individuals(tables, tskit, agents, genes)
+    tables.nodes.set_columns(
+        flags=np.r_[np.zeros(tip, np.uint32), np.ones(len(living), np.uint32), np.zeros(len(roots), np.uint32)],
+        time=np.r_[when, np.zeros(len(living)), (now - tree.birth[roots]).astype(np.float64)],
+        individual=np.r_[parent, living, roots].astype(np.int32),
+    )
+    edges = int(there.sum())
+    tables.edges.set_columns(
+        left=np.zeros(edges),
+        right=np.ones(edges),
+        parent=above[there].astype(np.int32),
+        child=below[there].astype(np.int32),
+    )
+    tables.sort()
+    return tables.tree_sequence()
+
+
+def _set_individuals(tables: Any, tskit: Any, agents: pl.DataFrame, genes: tuple[str, ...]) -> None:
+    names = [*("agent_id", "birth_step", "death_step"), *(name for name in genes if name in agents.columns)]
+    tables.individuals.metadata_schema = tskit.MetadataSchema({"codec": "json"})
+    for row in agents.select(names).iter_rows(named=True):
+        tables.individuals.add_row(metadata=row)
