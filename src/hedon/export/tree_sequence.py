@@ -49,7 +49,7 @@ def tree_sequence(agents: pl.DataFrame, genes: tuple[str, ...], now: int) -> Any
     below = np.concatenate([follows, first[births], first[roots]])
     there = below >= 0
     when = np.where(tree.birth[births] < now, now - tree.birth[births], LAST_BIRTH)
-    tables = tskit.TableCollection(sequence_length=1.0)
+    tables = tskit.TableCollection(sequence_length=1)
     tables.time_units = "steps"
     _set_individuals(tables, tskit, agents, genes)
     tables.nodes.set_columns(

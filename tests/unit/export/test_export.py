@@ -65,7 +65,7 @@ def test_the_default_file_is_named_after_the_run(folder: Path, tmp_path: Path, m
         (["frames"], "has no frames: record them with `hedon run --frames 64`"),
         (["agents", "--format", "newick"], "'newick' is not one of 'csv', 'parquet', 'arrow'"),
         (["agents", "--world", "1"], "No such option: --world"),
-        (["phylogeny", "--format", "csv"], "'csv' is not one of 'alife', 'newick', 'png'"),
+        (["phylogeny", "--format", "csv"], "'csv' is not one of 'alife', 'newick', 'trees', 'png'"),
         (["phylogeny", "--world", "1", "--color", "w_normal"], "--color is of a picture"),
         (["phylogeny"], "say which world: the run has seeds 1, 2"),
         (["phylogeny", "--world", "3"], "--world 3: there is no such world: the run has seeds 1, 2"),
