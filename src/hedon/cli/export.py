@@ -141,6 +141,29 @@ def indices(
 
 
 @app.command()
+def dataset(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN…", help="Folders of runs.")],
+    out: Annotated[Path | None, typer.Option(help="The new folder; by default dataset.")] = None,
+    title: Annotated[str | None, typer.Option(help="Of the card; by default the runs' names.")] = None,
+    license_name: Annotated[
+        str, typer.Option("--license", metavar="SPDX", help="Of the dataset, such as cc0-1.0.")
+    ] = "cc-by-4.0",
+    frames: Annotated[bool, typer.Option("--frames", help="With the positions of all bodies.")] = False,
+) -> None:
+    """Runs as a dataset to publish: Parquet tables, configs, a card with every column, and checksums.
+
+    \b
+    Example:
+      hedon export dataset runs/baseline-corrected-s1 --out baseline --license cc0-1.0
+    """
+    from hedon.export.dataset import write_dataset
+    from hedon.record.reader import open_run
+
+    made = write_dataset([open_run(path) for path in runs], out or Path("dataset"), title, license_name, frames=frames)
+    typer.echo(f"wrote {made[0]} and {len(made) - 1} files beside it")
+
+
+@app.command()
 def video(
     run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a run that was made with --frames.")],
     out: Annotated[Path, typer.Argument(metavar="OUT", help="The new file: .mp4 or .gif.")],

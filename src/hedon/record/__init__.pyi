@@ -1,4 +1,5 @@
 from .founder import make_founders as make_founders
+from .labelled import to_xarray as to_xarray
 from .reader import LoadedRun as LoadedRun
 from .reader import Run as Run
 from .reader import open_run as open_run

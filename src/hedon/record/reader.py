@@ -22,6 +22,7 @@ from hedon.record.folder import (
     require_plain,
     require_unicode,
 )
+from hedon.record.labelled import to_xarray
 from hedon.record.manifest import Manifest, load_manifest
 from hedon.record.part import read_living, read_part
 from hedon.record.schema import Columns, run_tables
@@ -30,6 +31,7 @@ from hedon.record.tool_frame import FrameName, require_frame, to_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray
 
 
 @dataclass(frozen=True, repr=False)
@@ -137,6 +139,21 @@ class Run:
         require_frame(frame)
         rows = self._population().sound(skip_damaged)
         return to_pandas(rows) if frame == "pandas" else rows
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """The table `population` as labelled arrays over seed, species where there are several, and step.
+
+        Each variable has its unit and its meaning as attributes.
+
+        Raises:
+            RecordError: a part is damaged.
+            ArgumentError: xarray is not installed.
+        """
+        several = ["species"] if self.columns.several else []
+        told = {
+            each.name: {"units": each.unit, "long_name": each.meaning} for each in self._tables["population"].columns
+        }
+        return to_xarray(self.population().drop("world"), ["seed", *several, "step"], told)
 
     def frames(self) -> pl.LazyFrame:
         """The frames, as a lazy frame, since they can be larger than memory. Empty if none were recorded.
