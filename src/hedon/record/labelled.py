@@ -23,8 +23,8 @@ def to_xarray(
         attributes: of variables, by name, such as units.
 
     Returns:
-        Variables of shape (labels of the first dimension, of the second, …): numbers as floats with NaN where there is no
-        row or no value, texts as objects with None.
+        Variables of shape (labels of the first dimension, of the second, …): numbers as floats, texts as objects; NaN
+        where there is no row or no value.
 
     Raises:
         ArgumentError: a dimension is no column, a combination appears twice, or xarray is not installed.
@@ -46,7 +46,7 @@ def to_xarray(
     variables: dict[str, Any] = {}
     for column in rows.drop(dims):
         numeric = column.dtype.is_numeric() or column.dtype == pl.Boolean
-        values = np.full(shape, np.nan) if numeric else np.full(shape, None, object)
+        values = np.full(shape, np.nan) if numeric else np.full(shape, np.nan, object)
         values[places] = column.cast(pl.Float64).to_numpy() if numeric else column.to_list()
         variables[column.name] = (list(dims), values, dict((attributes or {}).get(column.name, {})))
     return xr.Dataset(variables, coords=labels)

@@ -42,7 +42,7 @@ def test_a_sweep_is_over_its_factors() -> None:
     rows = pl.DataFrame({"cost": [2.0, 1.0, 1.0], "seed": [7, 7, 8], "alive": [3, 5, None], "kind": ["a", "b", "c"]})
     found = to_xarray(rows, ["cost", "seed"])
     np.testing.assert_array_equal(found["alive"].values, [[5.0, np.nan], [3.0, np.nan]])
-    assert found["kind"].values.tolist() == [["b", "c"], ["a", None]]
+    assert found["kind"].fillna("none").values.tolist() == [["b", "c"], ["a", "none"]]
     assert float(found["alive"].sel(cost=2.0, seed=7)) == 3.0
     assert xarray.Dataset.from_dict(found.to_dict()).equals(found)
     with pytest.raises(ArgumentError, match="several rows have the same seed"):
