@@ -44,6 +44,6 @@ def test_the_reason_names_the_worlds_and_what_to_do(tmp_path):
         batch_job(store.location, plan, batch, tmp_path, 1.0), RuntimeError("Out of memory.\nMore.")
     )
     assert f"lost {TRIES} times in a row without a new checkpoint, the last time with: Out of memory. Its" in reason
-    assert f"worlds: energy.basic_cost = {cost}, seed 1, 2." in reason
+    assert f"worlds: basic_cost={cost}, seeds 1-2." in reason
     assert "nodes with more" in reason
     assert "More." not in reason

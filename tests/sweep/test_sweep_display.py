@@ -9,6 +9,7 @@ from sweep_case import planned, sweep_file
 
 from hedon.cli.display.job import JobDisplay
 from hedon.ensemble.batch import batch_job
+from hedon.ensemble.condition import describe
 from hedon.ensemble.job import Outcome
 from hedon.experiment.plan import Moment
 
@@ -29,8 +30,8 @@ def test_progress_and_speed_are_shown_with_moments_and_without(tmp_path, termina
     lines = "".join(text.split())  # a long name of a folder goes on in the next line
     assert "30.0 %, 0 of 2 runs done" in text, "both worlds of the first are at step 600"
     assert re.search(r"[1-9][\d,]* world-steps/s, .* left", text)
-    assert f"{told.folder}:failed,step600,itbroke" in lines
-    assert f"{untold.folder}:finished" in lines
+    assert "basic_cost=0.001,seeds1-2:failed,step600,itbroke" in lines
+    assert "basic_cost=0.01,seeds1-2:finished" in lines
 
 
 def test_a_world_has_died_out_where_no_species_is_left(tmp_path):
@@ -71,4 +72,11 @@ def test_many_that_tell_no_moments_have_a_speed_and_are_not_told_one_by_one(tmp_
     lines = stream.getvalue().splitlines()
     assert re.fullmatch(r"3.3 %, 1 of 30 runs done, [1-9][\d,]+ world-steps/s, .* left", lines[0])
     assert re.fullmatch(r"96.7 %, 30 of 30 runs done, [1-9][\d,]+ world-steps/s", lines[1])
-    assert lines[2:] == [f"{jobs[-1].folder}: failed, it broke"]
+    assert lines[2:] == [f"{jobs[-1].label}: failed, it broke"]
+
+
+def test_batches_are_told_by_what_they_are_in_names_as_short_as_tell_apart():
+    assert describe({"energy.basic_cost": 0.002, "preset": "poor"}, (4,)) == 'basic_cost=0.002, preset="poor", seed 4'
+    same = {"food.normal.growth_rate": 0.5, "food.poison.growth_rate": 2}
+    assert describe(same, (1, 2, 3, 9)) == "normal.growth_rate=0.5, poison.growth_rate=2, seeds 1-3,9"
+    assert describe({}, (1,)) == "seed 1"

@@ -89,8 +89,7 @@ def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: 
 
     for job in jobs if len(jobs) <= MOST_TOLD else ():
         verb, worlds = "continue" if job.newest() else "begin", count(len(job.seeds), "world")
-        folder = printable(str(job.folder))
-        console.print(f"  {verb} {folder}: {worlds} to {job.steps:,} steps", soft_wrap=True)
+        console.print(f"  {verb} {printable(job.label)}: {worlds} to {job.steps:,} steps", soft_wrap=True)
     with JobDisplay(console, jobs) as display:
         outcomes = make_jobs(jobs, display, threads, ray)
     return {folder: outcome.status for folder, outcome in outcomes.items()}
@@ -114,7 +113,7 @@ def require_finished(
     from hedon.ensemble.error import EnsembleError
     from hedon.experiment.interrupt import interrupted_code
 
-    failed = [str(job.folder) for job in jobs if ends.get(job.folder) == "failed"]
+    failed = [job.label for job in jobs if ends.get(job.folder) == "failed"]
     left = [job for job in jobs if ends.get(job.folder) not in ("finished", "failed")]
     if left:
         console.print(

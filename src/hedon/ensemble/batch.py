@@ -16,8 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hedon.config.problem import format_value
-from hedon.ensemble.condition import SweepCondition
+from hedon.ensemble.condition import SweepCondition, describe
 from hedon.ensemble.error import EnsembleError
 from hedon.ensemble.plan import Batch, SweepPlan, load_config_of, load_rules
 from hedon.ensemble.row import world_rows
@@ -89,8 +88,12 @@ class BatchJob:
 
     def describe(self) -> str:
         """The values of its factors, and its seeds."""
-        settings = ", ".join(f"{name} = {format_value(value)}" for name, value in self.condition.settings.items())
-        return f"{settings or 'all settings'}, seed {', '.join(map(str, self.batch.seeds))}"
+        return describe(self.condition.settings, self.batch.seeds)
+
+    @property
+    def label(self) -> str:
+        """What displays call it: its description, since its folder is named by a digest."""
+        return self.describe()
 
     def make(self, threads: int, callback: Callback | None) -> str:
         """Makes the batch, from where it is, and writes its result.

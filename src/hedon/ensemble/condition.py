@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hedon.config.config import Config
+from hedon.config.problem import format_value
 from hedon.record.manifest import RuleSource
 
 DIGITS = 16
@@ -12,6 +13,31 @@ DIGITS = 16
 
 Settings = dict[str, Any]
 """A value for each factor, by its name."""
+
+
+def describe(settings: Settings, seeds: Sequence[int]) -> str:
+    """Values of factors and seeds in a few words: "basic_cost=0.002, seed 4"; names are as short as they tell apart."""
+    words = [
+        f"{short}={format_value(value)}" for short, value in zip(_short(list(settings)), settings.values(), strict=True)
+    ]
+    return ", ".join([*words, f"seed{'' if len(seeds) == 1 else 's'} {seed_text(seeds).replace('.', ',')}"])
+
+
+def seed_text(seeds: Sequence[int]) -> str:
+    """Seeds as part of a name, "1-4.9"; `parse_seeds` reads it with "," for "."."""
+    begins = [i for i in range(len(seeds)) if i == 0 or seeds[i] != seeds[i - 1] + 1]
+    ends = [*begins[1:], len(seeds)]
+    runs = [(seeds[begin], seeds[end - 1]) for begin, end in zip(begins, ends, strict=True)]
+    return ".".join(f"{first}" if first == last else f"{first}-{last}" for first, last in runs)
+
+
+def _short(names: Sequence[str]) -> list[str]:
+    """The ends of some paths that tell them apart."""
+    for parts in range(1, 9):
+        short = [".".join(name.split(".")[-parts:]) for name in names]
+        if len(set(short)) == len(names):
+            return short
+    return list(names)
 
 
 @dataclass(frozen=True)

@@ -48,6 +48,11 @@ class Job(Protocol):
         """Most threads that it can use; the last job of several gets all that are free."""
         ...
 
+    @property
+    def label(self) -> str:
+        """What displays call it."""
+        ...
+
     def newest(self) -> str:
         """The name of the last checkpoint from which it would go on; empty where there is none."""
         ...

@@ -18,7 +18,7 @@ from hedon.config.dump import digest, dump_toml
 from hedon.config.load import parse_config
 from hedon.config.rule_path import RULE_PATTERN, rule_places
 from hedon.config.validate import rebuild
-from hedon.ensemble.condition import DIGITS, Base, SweepCondition, changes
+from hedon.ensemble.condition import DIGITS, Base, SweepCondition, changes, seed_text
 from hedon.ensemble.error import EnsembleError
 from hedon.ensemble.store import Store
 from hedon.experiment.argument import parse_seeds
@@ -152,14 +152,6 @@ class SweepFile:
     bases: Mapping[str, Base]
     worlds: int
     left_out: tuple[str, ...] = ()
-
-
-def seed_text(seeds: Sequence[int]) -> str:
-    """Seeds as part of a name, "1-4.9"; `parse_seeds` reads it with "," for "."."""
-    begins = [i for i in range(len(seeds)) if i == 0 or seeds[i] != seeds[i - 1] + 1]
-    ends = [*begins[1:], len(seeds)]
-    runs = [(seeds[begin], seeds[end - 1]) for begin, end in zip(begins, ends, strict=True)]
-    return ".".join(f"{first}" if first == last else f"{first}-{last}" for first, last in runs)
 
 
 def read_name(name: str) -> tuple[str, tuple[int, ...]]:

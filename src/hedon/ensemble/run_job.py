@@ -48,6 +48,11 @@ class RunJob:
         """One for each world."""
         return len(self.plan.seeds)
 
+    @property
+    def label(self) -> str:
+        """What displays call it: its folder."""
+        return str(self.folder)
+
     def newest(self) -> str:
         """The name of its last checkpoint; empty where there is none."""
         return max((path.name for path in checkpoint_paths(self.folder)), default="")

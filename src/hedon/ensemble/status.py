@@ -6,7 +6,8 @@ from typing import Any
 from hedon.ensemble.batch import WORK
 from hedon.ensemble.batches import open_batches
 from hedon.ensemble.collect import read_results
-from hedon.ensemble.plan import SweepPlan
+from hedon.ensemble.condition import describe
+from hedon.ensemble.plan import Batch, SweepPlan
 from hedon.ensemble.store import Store
 from hedon.error import HedonError
 from hedon.record.reader import open_run
@@ -20,7 +21,8 @@ class Status:
         batches, done: how many there are, and have a result.
         worlds: with a row in the table.
         extinct: of them, died out.
-        begun: batches that are under way or were left, with the share of each that is recorded.
+        begun: batches that are under way or were left, by name, with the share of each that is recorded.
+        labels: what each of these is: values of factors, and seeds.
         seconds: that the batches so far took, summed over them [s].
         seconds_left: of one worker for all the rest, if it goes as fast as so far [s]; None before the first result.
     """
@@ -30,6 +32,7 @@ class Status:
     worlds: int
     extinct: int
     begun: dict[str, float]
+    labels: dict[str, str]
     seconds: float
     seconds_left: float | None
 
@@ -53,9 +56,14 @@ def sweep_status(plan: SweepPlan, store: Store) -> Status:
         worlds=len(worlds),
         extinct=sum(world["extinct"] for world in worlds),
         begun=begun,
+        labels={each.name: _label(plan, each) for each in missing if each.name in begun},
         seconds=seconds,
         seconds_left=None if rate is None else rate * left,
     )
+
+
+def _label(plan: SweepPlan, batch: Batch) -> str:
+    return describe(plan.conditions[batch.condition].settings, batch.seeds)
 
 
 def _share(store: Store, name: str, steps: int) -> float | None:

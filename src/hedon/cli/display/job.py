@@ -35,6 +35,7 @@ class JobDisplay(Screen):
         self._total = sum(job.world_steps for job in jobs)
         self._count = len(jobs)
         self._moments: dict[Path, Moment] = {}
+        self._labels = {job.folder: job.label for job in jobs}
         self._done: dict[Path, int] = {}
         self._before: dict[Path, int] = {}  # what was done of a run before it went on
         self._ended = self._ended_done = self._ended_before = 0
@@ -63,7 +64,7 @@ class JobDisplay(Screen):
             self._show()
         if whole and self._count > MOST_TOLD:
             return
-        words = [f"{job.folder}: {outcome.status}"]
+        words = [f"{job.label}: {outcome.status}"]
         if moment is not None:
             words.append(f"step {moment.step:,}")
             words += [f"seed {seed} died out" for seed in _ended(job, moment)]
@@ -94,11 +95,11 @@ class JobDisplay(Screen):
 
     def _describe(self, folder: Path) -> str:
         moment = self._moments[folder]
-        return f"{folder.name} step {moment.step:,} of {moment.steps:,}, {_alive(moment)} alive"
+        return f"{self._labels[folder]} step {moment.step:,} of {moment.steps:,}, {_alive(moment)} alive"
 
     def _draw(self) -> Group:
         rows = [
-            (folder.name, f"{moment.step:,}", f"{moment.steps:,}", _alive(moment))
+            (self._labels[folder], f"{moment.step:,}", f"{moment.steps:,}", _alive(moment))
             for folder, moment in self._moments.items()
         ]
         table = PrintedTable(("run", "step", "of", "alive"), rows, text=(0, 3))
