@@ -16,9 +16,10 @@ from worlds import QUICK
 from hedon import RunPlan, load_config, run
 from hedon.analysis.world.record import read_worlds
 from hedon.cli.main import app
-from hedon.compare.contrast import compare
+from hedon.compare.contrast import compare, compare_answer
 from hedon.compare.error import CompareError
 from hedon.compare.report import settings_table
+from hedon.compare.source import WorldTable
 from hedon.ensemble.collect import collect
 from hedon.ensemble.plan import load_plan
 from hedon.ensemble.store import Store
@@ -126,6 +127,21 @@ def test_below_five_worlds_there_is_no_interval():
         few, enough = (test(rng.normal(size=n), rng.normal(size=n)) for n in (4, 5))
         assert math.isnan(few.low)
         assert enough.low < enough.difference < enough.high
+
+
+@pytest.mark.parametrize(("pairs", "least"), [(3, "0.25"), (5, "0.062"), (6, None)])
+def test_too_few_pairs_for_any_p_value_below_a_twentieth_are_told(pairs, least):
+    rows = [(seed, cost, 10.0 * seed + (cost > 0.005) * (5 + seed)) for seed in range(pairs) for cost in (0.001, 0.01)]
+    table = pl.DataFrame(rows, schema=["seed", "cost", "alive_mean"], orient="row")
+    answer = compare_answer(WorldTable("mine", table, ("cost",)), "cost")
+    (contrast,) = (each for each in answer.tables if each.name == "contrast")
+    lowest = contrast.rows["p"][0]
+    if least is None:
+        assert "no p is below" not in contrast.note
+        assert lowest < 0.05
+    else:
+        assert f"With {pairs} pairs, no p is below {least}: take at least 6." in contrast.note
+        assert lowest == pytest.approx(2 / 2**pairs)
 
 
 def test_factors_that_are_not_crossed_are_told(tmp_path):

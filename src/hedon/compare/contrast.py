@@ -21,7 +21,10 @@ from hedon.report.answer import Answer, simple_answer
 from hedon.statistic.contrast import Contrast, independent_contrast, paired_contrast
 from hedon.statistic.correction import holm
 from hedon.statistic.minimum import FOR_INTERVAL
+from hedon.text import count
 
+SIGNIFICANT_PAIRS = 6
+"""The fewest pairs of which an exchange of signs can have a p value below 0.05: 2 / 2⁶ is 0.03."""
 MOST_LISTED = 8
 """At most this many values of a factor appear in a message."""
 
@@ -201,6 +204,9 @@ def _contrasts(found: Sequence[Compared], names: Sequence[str], others: Sequence
         "counterpart. p: of pairs, by exchanging their signs, exact if there are few; otherwise Welch's t test; p "
         f"Holm: corrected for these {len(found)} measures. Worlds that died out count if they have a value."
     )
+    most = max((len(each.matched.values) for each in found if each.matched.paired), default=0)
+    if 0 < most < SIGNIFICANT_PAIRS:
+        note += f" With {count(most, 'pair')}, no p is below {2 / 2**most:.2g}: take at least {SIGNIFICANT_PAIRS}."
     note += f" The conditions differ in {', '.join(others)} too: the design does not cross them." if others else ""
     return make_table("contrast", f"{names[1]} against {names[0]}", rows, note)
 
