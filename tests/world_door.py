@@ -29,9 +29,11 @@ from hedon.experiment.replay import replay_run
 from hedon.experiment.resume import resume
 from hedon.experiment.run import run
 from hedon.experiment.simulation import Simulation
+from hedon.export.dataset import write_dataset
 from hedon.export.indices import index_table
 from hedon.export.phylogeny import alife_table, last_step, newick, pedigree
-from hedon.export.table import TableName, table_of, write_table
+from hedon.export.table import ExportError, TableName, table_of, write_table
+from hedon.export.tree_sequence import tree_sequence
 from hedon.measure.summary import summarize
 from hedon.record.reader import open_run
 from hedon.report.analysis import analyze, write_analysis
@@ -269,8 +271,17 @@ def _export(trial: Trial) -> None:
         assert alife_table(tree, opened.weight_names).height == tree.height
         if "mate_id" in tree.columns and tree["mate_id"].is_not_null().any():
             continue  # there is no tree
-        assert newick(tree, now) or not tree["death_step"].null_count()
+        lives = tree_sequence(tree, opened.weight_names, now)
+        assert (lives.num_individuals, lives.num_samples) == (tree.height, tree["death_step"].null_count())
         assert index_table(tree, now, 5).height
+        if tree["death_step"].null_count():
+            assert newick(tree, now)
+            continue
+        with pytest.raises(ExportError, match="nobody lives at the end"):
+            newick(tree, now)
+    assert opened.to_xarray()["alive"].notnull().sum() == opened.population().height
+    made = write_dataset([opened], trial.folder / "dataset", frames="frames" in tables)
+    assert len(made) == 6 + ("frames" in tables)
 
 
 def _view(trial: Trial) -> None:
