@@ -59,6 +59,7 @@ def test_futures_begin_with_the_same_agents(past: Path, futures: Path) -> None:
     assert born["birth_step"].n_unique() == born.height
 
 
+@pytest.mark.more
 def test_futures_are_checked_computed_again_resumed_and_reported(futures: Path, tmp_path: Path) -> None:
     manifest = load_manifest(futures)
     assert manifest.parent is not None
@@ -83,6 +84,7 @@ def test_worlds_of_several_species_have_futures(tmp_path: Path) -> None:
     assert check_run(tmp_path / "futures").findings == ()
 
 
+@pytest.mark.more
 def test_a_device_has_the_same_futures(
     emulated: str, past: Path, futures: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
