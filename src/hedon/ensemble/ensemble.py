@@ -16,6 +16,9 @@ from hedon.record.error import RecordError
 from hedon.record.folder import MANIFEST
 from hedon.record.reader import Run, open_run
 
+ENDED = ("finished", "interrupted")
+"""The states in which a manifest says how far the run came."""
+
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
@@ -68,10 +71,6 @@ class Ensemble:
         """The runs that hold some worlds."""
         names = {world.run for world in worlds}
         return tuple(run for run in self.runs if run.path.name in names)
-
-
-ENDED = ("finished", "interrupted")
-"""The states in which a manifest says how far the run came."""
 
 
 def find_ensemble(demands: Sequence[Demand], folder: Path) -> Ensemble:

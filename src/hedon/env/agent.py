@@ -28,6 +28,13 @@ def one_group(worlds: VectorEnv) -> Group:
     return next(iter(worlds.groups.values()))
 
 
+def require_policy(others: Any) -> Policy | None:
+    """The policy of the others. ArgumentError: it is no function."""
+    if others is not None and not callable(others):
+        raise ArgumentError(f"others: must be a function from observations to actions, not {brief(repr(others))}")
+    return others
+
+
 def first_founder(group: Group, world: int) -> int:
     """The slot of the first founder of a world that has just begun. EngineError: there is none."""
     founders = np.flatnonzero(group.alive[world])
@@ -98,9 +105,7 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             config, 1, seed, species, actions, repeat, max_steps, render_mode, threads, overrides=overrides
         )
         self._group = one_group(self._vector)
-        if others is not None and not callable(others):
-            raise ArgumentError(f"others: must be a function from observations to actions, not {brief(repr(others))}")
-        self._others = others
+        self._others = require_policy(others)
         self._slot = -1
         self.render_mode = render_mode
         self.observation_space = self._vector.single_observation_space

@@ -4,23 +4,19 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import gymnasium
 import numpy as np
-from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from hedon.config.config import Config
-from hedon.copied import Copied
-from hedon.env.agent import Policy, answered, first_founder, one_group
+from hedon.env.agent import Policy, answered, first_founder, one_group, require_policy
 from hedon.env.argument import RESET_MASK, options_of
 from hedon.env.group import Form
 from hedon.env.make import make
-from hedon.env.slot_vector import METADATA, Floats
+from hedon.env.vector_base import Floats, WorldsVectorEnv
 from hedon.error import ArgumentError
-from hedon.text import brief
 
 
-class AgentVectorEnv(Copied, gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]):
+class AgentVectorEnv(WorldsVectorEnv):
     """One agent in each of several worlds: `AgentEnv` for as many worlds as there are environments, stepped together.
 
     `gymnasium.make_vec("hedon/baseline-v0", num_envs=8)` makes it. When an agent dies, or its time is over, its world
@@ -45,8 +41,6 @@ class AgentVectorEnv(Copied, gymnasium.vector.VectorEnv[Floats, Floats, NDArray[
         EngineError: A world begins without an agent of the species.
     """
 
-    metadata = dict(METADATA)  # noqa: RUF012  # as Gymnasium declares it
-
     def __init__(
         self,
         config: Config | str | Path,
@@ -61,18 +55,12 @@ class AgentVectorEnv(Copied, gymnasium.vector.VectorEnv[Floats, Floats, NDArray[
         threads: int = 0,
         overrides: Iterable[str] = (),
     ) -> None:
-        self.worlds = make(
+        worlds = make(
             config, num_envs, seed, species, actions, repeat, max_steps, render_mode, threads, overrides=overrides
         )
-        self.group = one_group(self.worlds)
-        if others is not None and not callable(others):
-            raise ArgumentError(f"others: must be a function from observations to actions, not {brief(repr(others))}")
-        self._others = others
-        self.num_envs, self.render_mode = num_envs, render_mode
-        self.single_observation_space = self.worlds.single_observation_space
-        self.single_action_space = self.worlds.single_action_space
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.group = one_group(worlds)
+        super().__init__(worlds, num_envs)
+        self._others = require_policy(others)
         self._slots, self._over = np.full(num_envs, -1), np.zeros(num_envs, np.bool_)
 
     def reset(
@@ -130,14 +118,6 @@ class AgentVectorEnv(Copied, gymnasium.vector.VectorEnv[Floats, Floats, NDArray[
         cut = ~begins & ~died & self.group.truncated[rows]
         self._over = died | cut
         return np.where(died[:, None], np.float32(0), self._seen()), rewards, died, cut, self._infos()
-
-    def render(self) -> tuple[Any, ...] | None:
-        """A picture of each world; None without a `render_mode`."""
-        return None if self.render_mode is None else tuple(self.worlds.render(i) for i in range(self.num_envs))
-
-    def close_extras(self, **kwargs: Any) -> None:
-        """Closes the window, if there is one."""
-        self.worlds.close()
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "group"}

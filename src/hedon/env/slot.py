@@ -34,15 +34,10 @@ class SlotVecEnv(VecEnv, Copied):
 
     def __init__(self, worlds: VectorEnv) -> None:
         self.lives = SlotLives(worlds, at_once=True)
-        self.render_mode = worlds.render_mode
+        self.worlds, self.render_mode = worlds, worlds.render_mode
         self._given: Any = self.lives.group.actions
         self._begun = time.monotonic()
         super().__init__(self.lives.count, worlds.single_observation_space, worlds.single_action_space)
-
-    @property
-    def worlds(self) -> VectorEnv:
-        """The worlds of the slots."""
-        return self.lives.worlds
 
     @property
     def group(self) -> Group:

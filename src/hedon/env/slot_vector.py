@@ -1,30 +1,18 @@
 """Slots of worlds as a vector environment of Gymnasium."""
 
-from collections.abc import Mapping
 from typing import Any
 
-import gymnasium
 import numpy as np
-from gymnasium.vector import AutoresetMode
-from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from hedon.copied import Copied
 from hedon.env.argument import options_of
 from hedon.env.group import Group
 from hedon.env.slot_life import SlotLives
-from hedon.env.vector import RENDER_MODES, VectorEnv
-
-Floats = NDArray[np.float32]
-METADATA: Mapping[str, Any] = {
-    "render_modes": list(RENDER_MODES),
-    "render_fps": 30,
-    "autoreset_mode": AutoresetMode.NEXT_STEP,
-}
-"""As Gymnasium's vector environments declare it: what follows an end comes in the next step."""
+from hedon.env.vector import VectorEnv
+from hedon.env.vector_base import Floats, WorldsVectorEnv
 
 
-class SlotVectorEnv(Copied, gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]):
+class SlotVectorEnv(WorldsVectorEnv):
     """Each slot of a species in each world as an environment: one network acts for all agents, and learns from all.
 
     An episode is a life. A slot whose agent has died observes zeros and is paid 0 until an agent is born there. If one
@@ -50,21 +38,9 @@ class SlotVectorEnv(Copied, gymnasium.vector.VectorEnv[Floats, Floats, NDArray[A
         >>> observations, rewards, terminations, truncations, infos = envs.step(envs.action_space.sample())
     """
 
-    metadata = dict(METADATA)  # noqa: RUF012  # as Gymnasium declares it
-
     def __init__(self, worlds: VectorEnv) -> None:
         self.lives = SlotLives(worlds, at_once=False)
-        self.num_envs = self.lives.count
-        self.render_mode = worlds.render_mode
-        self.single_observation_space = worlds.single_observation_space
-        self.single_action_space = worlds.single_action_space
-        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
-        self.action_space = batch_space(self.single_action_space, self.num_envs)
-
-    @property
-    def worlds(self) -> VectorEnv:
-        """The worlds of the slots."""
-        return self.lives.worlds
+        super().__init__(worlds, self.lives.count)
 
     @property
     def group(self) -> Group:
@@ -109,13 +85,3 @@ class SlotVectorEnv(Copied, gymnasium.vector.VectorEnv[Floats, Floats, NDArray[A
         if step.ended.any():
             infos |= {"life": {"r": step.paid, "l": step.lived}, "_life": step.ended}
         return step.observations, step.rewards, step.ended & ~step.cut, step.cut, infos
-
-    def render(self) -> tuple[Any, ...] | None:
-        """A picture of each world; None without a `render_mode`."""
-        if self.render_mode is None:
-            return None
-        return tuple(self.worlds.render(i) for i in range(len(self.worlds.simulation.worlds)))
-
-    def close_extras(self, **kwargs: Any) -> None:
-        """Ends the records and closes the window, if there are some."""
-        self.worlds.close()
