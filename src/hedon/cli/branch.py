@@ -36,7 +36,7 @@ def branch(
     checkpoint: Checkpoint = CHECKPOINT_SECONDS,
     report: Report = True,
 ) -> None:
-    """Continue from a checkpoint with changed settings or with other chances, as a new run.
+    """Continue from a checkpoint as a new run, with changed settings or different chance events.
 
     Without --set and --seeds the worlds continue unchanged in a new folder. With --seeds, one world has several
     futures, which begin with the same agents and differ by chance alone. Settings that fix the layout of the saved

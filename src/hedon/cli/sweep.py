@@ -122,7 +122,7 @@ def status(place: Place) -> None:
     batches, worlds = count(found.batches, "batch"), count(found.worlds, "world")
     console.print(f"  done: {found.done} of {batches}, {worlds}, {found.extinct} extinct")
     for name, share in found.begun.items():
-        console.print(f"  begun: {found.labels[name]}, {100 * share:.0f} %")
+        console.print(f"  begun: {name}, {100 * share:.0f} %")
     if found.seconds_left is not None and found.done < found.batches:
         console.print(f"  left: {duration(found.seconds_left)} of one worker; so far {duration(found.seconds)}")
 

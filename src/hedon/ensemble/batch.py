@@ -92,7 +92,7 @@ class BatchJob:
 
     @property
     def label(self) -> str:
-        """What displays call it: its description, since its folder is named by a digest."""
+        """Its name in displays: the description, since the folder's name is a digest."""
         return self.describe()
 
     def make(self, threads: int, callback: Callback | None) -> str:

@@ -50,7 +50,7 @@ class Job(Protocol):
 
     @property
     def label(self) -> str:
-        """What displays call it."""
+        """Its name in displays."""
         ...
 
     def newest(self) -> str:

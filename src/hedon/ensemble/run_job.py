@@ -50,7 +50,7 @@ class RunJob:
 
     @property
     def label(self) -> str:
-        """What displays call it: its folder."""
+        """Its name in displays: the folder."""
         return str(self.folder)
 
     def newest(self) -> str:

@@ -7,7 +7,7 @@ from hedon.ensemble.batch import WORK
 from hedon.ensemble.batches import open_batches
 from hedon.ensemble.collect import read_results
 from hedon.ensemble.condition import describe
-from hedon.ensemble.plan import Batch, SweepPlan
+from hedon.ensemble.plan import SweepPlan
 from hedon.ensemble.store import Store
 from hedon.error import HedonError
 from hedon.record.reader import open_run
@@ -21,8 +21,7 @@ class Status:
         batches, done: how many there are, and have a result.
         worlds: with a row in the table.
         extinct: of them, died out.
-        begun: batches that are under way or were left, by name, with the share of each that is recorded.
-        labels: what each of these is: values of factors, and seeds.
+        begun: batches in progress or interrupted, by their settings and seeds, with the share of each that is recorded.
         seconds: that the batches so far took, summed over them [s].
         seconds_left: of one worker for all the rest, if it goes as fast as so far [s]; None before the first result.
     """
@@ -32,7 +31,6 @@ class Status:
     worlds: int
     extinct: int
     begun: dict[str, float]
-    labels: dict[str, str]
     seconds: float
     seconds_left: float | None
 
@@ -43,27 +41,22 @@ def sweep_status(plan: SweepPlan, store: Store) -> Status:
     for _, result in read_results(plan, store):
         done, seconds = done + 1, seconds + (result["seconds"] or 0.0)
         worlds += [{"extinct": world["extinct"]} for world in result["worlds"]]
-    begun = {}
-    for batch in missing if store.folder is not None else ():
-        share = _share(store, batch.name, plan.steps)
+    begun, left = {}, 0.0
+    for batch in missing:
+        share = None if store.folder is None else _share(store, batch.name, plan.steps)
+        left += len(batch.seeds) * (1.0 - (share or 0.0))
         if share is not None:
-            begun[batch.name] = share
+            begun[describe(plan.conditions[batch.condition].settings, batch.seeds)] = share
     rate = seconds / len(worlds) if worlds else None  # [s] of each world
-    left = sum(len(batch.seeds) * (1.0 - begun.get(batch.name, 0.0)) for batch in missing)
     return Status(
         batches=len(missing) + done,
         done=done,
         worlds=len(worlds),
         extinct=sum(world["extinct"] for world in worlds),
         begun=begun,
-        labels={each.name: _label(plan, each) for each in missing if each.name in begun},
         seconds=seconds,
         seconds_left=None if rate is None else rate * left,
     )
-
-
-def _label(plan: SweepPlan, batch: Batch) -> str:
-    return describe(plan.conditions[batch.condition].settings, batch.seeds)
 
 
 def _share(store: Store, name: str, steps: int) -> float | None:
