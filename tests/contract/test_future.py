@@ -68,7 +68,9 @@ def test_futures_are_checked_computed_again_resumed_and_reported(futures: Path, 
     findings, said = replay_run(futures)
     assert findings == ()
     assert "computed again from step" in said
-    assert write_report(open_run(futures), folder=tmp_path / "report", figures="none")
+    write_report(open_run(futures), folder=tmp_path / "report", figures="none")
+    said = "The worlds of futures are futures of one world (seed 2 of run) from step 300 on. They share its past"
+    assert said in (tmp_path / "report" / "report.md").read_text(encoding="utf-8")
     whole = branch(futures.with_name("run"), tmp_path / "whole", steps=STEPS + 100, seeds=(2, 50, 51), of=2)
     branch(futures.with_name("run"), tmp_path / "half", steps=STEPS, seeds=(2, 50, 51), of=2)
     assert resume(tmp_path / "half", steps=STEPS + 100).world_digests == whole.world_digests

@@ -28,7 +28,7 @@ def one_group(worlds: VectorEnv) -> Group:
     return next(iter(worlds.groups.values()))
 
 
-def require_policy(others: Any) -> Policy | None:
+def require_policy(others: Policy | None) -> Policy | None:
     """The policy of the others. ArgumentError: it is no function."""
     if others is not None and not callable(others):
         raise ArgumentError(f"others: must be a function from observations to actions, not {brief(repr(others))}")

@@ -114,10 +114,24 @@ def report_page(analysis: Analysis, figures: Mapping[str, Sequence[FigureFile]])
             *details,
             PageSection("Tables", list(shown.values()), "tables"),
         ],
-        _lines([*analysis.unfinished, *narrow_intervals(analysis.conditions)]),
+        _lines([*analysis.unfinished, *shared_pasts(analysis.runs), *narrow_intervals(analysis.conditions)]),
         analysis.conditions,
         analysis.runs,
     )
+
+
+def shared_pasts(runs: Sequence[Run]) -> list[str]:
+    """A sentence for each run whose worlds are futures of one world: they are not independent."""
+    told = []
+    for run in runs:
+        parent = run.manifest.parent
+        if parent is not None and parent.seed is not None:
+            told.append(
+                f"The worlds of {run.path.name} are futures of one world (seed {parent.seed} of {parent.folder}) from "
+                f"step {parent.step:,} on. They share its past, so intervals and tests are about its futures, "
+                "not about independent worlds."
+            )
+    return told
 
 
 def narrow_intervals(conditions: Conditions) -> list[str]:
