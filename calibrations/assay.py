@@ -8,9 +8,10 @@ import numpy as np
 from calibrations.calibration import Calibration
 from hedon.analysis.gene.course import WALKS, WorldCourse
 from hedon.assay.contest import Contest, Lines, estimate
+from hedon.assay.contingency import distance_ratio, overlap
 from hedon.assay.frequency import estimate_frequency
 from hedon.assay.gene_effect import gene_effects
-from hedon.assay.resample import Estimate, relative
+from hedon.assay.resample import Estimate, Floats, relative
 from hedon.assay.stability import Stability, judge, weight_course
 
 LEVEL = 0.05
@@ -107,7 +108,33 @@ def _stability(rng: np.random.Generator) -> bool:
     return any(course.verdict != "as drift" for start in judge(starts) for course in start.courses.values())
 
 
+def _apart(rng: np.random.Generator, truth: float) -> tuple[list[Floats], Floats]:
+    """Futures of 1 to 4 worlds and fresh worlds, whose distances have a known ratio, of one gene or several."""
+    law = rng.normal if rng.random() < 0.5 else rng.laplace
+    genes = int(rng.choice([1, 16]))
+    shared = law(size=genes)
+    groups = [truth * law(size=(rng.integers(8, 16), genes)) + shared for _ in range(rng.integers(1, 5))]
+    return groups, law(size=(int(rng.integers(8, 31)), genes))
+
+
+def _ratio(rng: np.random.Generator) -> bool | None:
+    _, low, high, _ = distance_ratio(*_apart(rng, 0.5))
+    return None if np.isnan(low) else not low <= 0.5 <= high
+
+
+def _ratio_p(rng: np.random.Generator) -> bool:
+    return distance_ratio(*_apart(rng, 1.0))[3] <= LEVEL
+
+
+def _overlapping(rng: np.random.Generator) -> bool:
+    """Whether agents that are interchangeable are said to be successful in every future; few have descendants."""
+    futures, agents = int(rng.integers(2, 11)), int(rng.integers(5, 200))
+    shares = rng.gamma(0.3, size=(futures, agents)) * (rng.random((futures, agents)) < 0.5) + 1e-9
+    return overlap(1, 0, "agent", shares / shares.sum(axis=1, keepdims=True), 200).p <= LEVEL
+
+
 _ALIKE = "5 to 12 worlds of 100 agents over 8 generations; the groups do not differ; start at {}"
+_KINDS = "8 to 15 futures of each of 1 to 4 worlds, and 8 to 30 fresh worlds"
 CALIBRATIONS = [
     Calibration("compete, s", ("assay:compete",), _ALIKE.format(0.5), "missed", LEVEL, _strength(0.5)),
     Calibration(
@@ -156,5 +183,29 @@ CALIBRATIONS = [
         "false alarms",
         LEVEL,
         _stability,
+    ),
+    Calibration(
+        "contingency, ratio of distances",
+        ("assay:contingency",),
+        f"{_KINDS}, which lie half as far apart; normal or Laplace",
+        "missed",
+        LEVEL,
+        _ratio,
+    ),
+    Calibration(
+        "contingency, p of a ratio",
+        ("assay:contingency",),
+        f"{_KINDS}, which lie as far apart; normal or Laplace",
+        "false alarms",
+        LEVEL,
+        _ratio_p,
+    ),
+    Calibration(
+        "contingency, p of an overlap",
+        ("assay:contingency",),
+        "2 to 10 futures of 5 to 200 agents that are interchangeable; half have no descendants",
+        "false alarms",
+        LEVEL,
+        _overlapping,
     ),
 ]

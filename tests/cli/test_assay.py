@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from command import hedon
 
+from hedon.assay.report_contingency import CAUTION
 from hedon.check.run import check_run
 from hedon.record.reader import open_run
 
@@ -234,6 +235,59 @@ def test_a_start_begins_at_its_point(folder: Path) -> None:
         assert {"held", "leaves", "as drift"} >= set(each["verdicts"].values())
 
 
+LIVELY = (
+    "world.rollout_steps=64",
+    "learning.minibatch_size=32",
+    "hazard.kappa=0.1",
+    "birth.kappa=0.002",
+    "population.initial_count=60",
+)
+
+
+@pytest.fixture(scope="module")
+def past(folder: Path) -> Path:
+    """Two worlds of many births and deaths, as the past of others."""
+    settings = tuple(part for setting in LIVELY for part in ("--set", setting))
+    made = hedon("run", "baseline", "--seeds", "1-2", "--steps", "896", *settings, "--out", "past", cwd=folder)
+    assert made.returncode == 0, made.stderr
+    return folder / "past"
+
+
+@pytest.mark.more
+def test_futures_that_part_late_end_nearer_than_fresh_worlds(folder: Path, past: Path) -> None:
+    words = ("contingency", "past", "--steps", "1024", "--seeds", "101-106", "--out", "replayed")
+    for part in ("1/2", "2/2", None):
+        answer = call(folder, *words, *(("--part", part) if part else ()))
+        assert answer.returncode == 0, answer.stderr
+    assert "all are there" in answer.stdout, "the two parts made every world"
+    found = json.loads((folder / "replayed" / "contingency.json").read_text(encoding="utf-8"))
+    assert found["cautions"] == [CAUTION]
+    assert found["pasts"] == [{"seed": 1, "step": 896}, {"seed": 2, "step": 896}]
+    rows = {row["measure"]: row for row in found["tables"]["contingency"]["rows"]}
+    assert rows["neutral genes"]["high"] < 1
+    assert rows["neutral genes"]["result"] == "partly settled"
+    assert {row["futures"] for row in rows.values()} == {12}
+    assert rows.keys() >= {"w_normal_mean", "w_action_mean", "alive_mean", "generation", "lineages"}
+    shared = found["tables"]["contingency_lineage"]["rows"]
+    assert [(row["past"], row["step"]) for row in shared] == [(1, 896), (2, 896)]
+    assert all(row["overlap"] > row["by chance"] for row in shared)
+    kinds = {row["past"] for row in found["tables"]["world"]["rows"]}
+    assert kinds == {"fresh", "seed 1 at 896", "seed 2 at 896"}
+    for run in ("seed-1-at-896-1", "fresh-1"):
+        assert check_run(folder / "replayed" / run).findings == ()
+
+
+@pytest.mark.more
+def test_comparisons_say_which_worlds_share_a_past(folder: Path, past: Path) -> None:
+    made = hedon("branch", "past", "--of", "1", "--seeds", "21-26", "--steps", "960", "--out", "futures", cwd=folder)
+    assert made.returncode == 0, made.stderr
+    said = "The worlds of futures are futures of one world (seed 1 of past) from step 896 on."
+    for command in (("compare", "past", "futures"), ("power", "futures", "--effect", "0.1")):
+        answer = hedon(*command, cwd=folder)
+        assert answer.returncode == 0, answer.stderr
+        assert said in " ".join(answer.stdout.split())
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -268,6 +322,12 @@ def test_a_start_begins_at_its_point(folder: Path) -> None:
             "needs a world of one species, and predator has prey",
         ),
         (("stability", "baseline", "--at", "food=1", "--set", "birth.mating=pairs"), "needs children of one parent"),
+        (("contingency", "whole/run", "--seeds", "2,3"), "seed 2: is that of a world of whole/run"),
+        (("contingency", "whole/run@9"), "has no checkpoint of step 9"),
+        (("contingency", "whole/run@x"), "x is not a step: give RUN or RUN@STEP"),
+        (("contingency", "whole/run", "--of", "9"), "the run has no such world of the seeds 1, 2"),
+        (("contingency", "whole/run", "--steps", "1000"), "a branch needs more total steps than that"),
+        (("contingency", "nowhere"), "nowhere"),
     ],
 )
 def test_bad_input_ends_in_one_message(folder: Path, arguments: tuple[str, ...], message: str) -> None:

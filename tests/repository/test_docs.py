@@ -115,3 +115,9 @@ def assert_every_setting_has_its_value(sweep: SweepFile, table: dict) -> None:
         have = values(config)
         for path, value in {**table.get("set", {}), **condition.settings}.items():
             assert have[path] == value, path
+
+
+def test_each_change_is_listed_once() -> None:
+    lines = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()
+    long = [line for line in lines if len(line) > 60]
+    assert len(long) == len(set(long))

@@ -1,6 +1,7 @@
 """The options of assays: which genes, how founders are spread, which runs."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from hedon.assay.contest import points_of
@@ -9,11 +10,13 @@ from hedon.config.config import Config
 from hedon.config.dump import digest
 from hedon.config.layout import choose_species
 from hedon.config.schema.evolution import GenomeConfig
-from hedon.ensemble.demand import Demand
+from hedon.ensemble.demand import Demand, Past
+from hedon.experiment.branch import plan_branch
 from hedon.experiment.plan import RunPlan
 from hedon.record.folder import CONFIG
 from hedon.record.founder import Founders, column_of, join, unknown_gene
 from hedon.record.founder_source import read_source, source_label
+from hedon.record.reader import open_run
 from hedon.text import brief
 
 
@@ -189,3 +192,58 @@ def stability_config(config: Config, point: Mapping[str, float]) -> Config:
         else:
             raise AssayError(f"--at {column}={value:g}: a neutral marker is the control, so give food kinds and action")
     return changed
+
+
+def contingency_worlds(
+    sources: Sequence[str], of: Sequence[int] | None, seeds: Sequence[int], fresh: Sequence[int], steps: int
+) -> list[Demand]:
+    """The worlds of an assay of contingency: fresh ones first, then the futures of each world of each run.
+
+    Args:
+        sources: Runs, each as RUN or RUN@STEP.
+        of: Seeds of the worlds that have futures; None for all worlds of the runs.
+        seeds: Of each world's futures.
+        fresh: Seeds of fresh worlds.
+        steps: Total steps of each world.
+
+    Raises:
+        AssayError: The runs differ in their settings, one of them is a branch, or a seed is used twice.
+        RecordError: A run cannot be read, or lacks the checkpoint.
+        ArgumentError: A world cannot have several futures, or there is no such world.
+    """
+    demands: list[Demand] = []
+    for source in sources:
+        folder, step = _run_and_step(source)
+        run = open_run(folder)
+        if run.manifest.parent is not None:
+            raise AssayError(f"{brief(source)}: is a branch, whose worlds did not begin as fresh ones do")
+        for seed in run.manifest.seeds if of is None else of:
+            plan = plan_branch(folder, folder / "futures", (), step, steps, seeds=seeds, of=seed)
+            if seed in {*seeds, *fresh}:
+                raise AssayError(
+                    f"seed {seed}: is that of a world of {brief(source)}, so its future would be that world itself: "
+                    "choose other --seeds and --fresh"
+                )
+            past = Past(folder.resolve(), plan.parent.step, seed)
+            if not demands:
+                demands.append(_continued(plan.run, fresh, "fresh"))
+            if plan.parent.config_digest != demands[0].digest:
+                raise AssayError(f"{brief(source)}: has other settings than {brief(sources[0])}")
+            futures = _continued(plan.run, seeds, f"seed-{seed}-at-{past.step}")
+            demands.append(replace(futures, past=past))
+    return demands
+
+
+def _continued(plan: RunPlan, seeds: Sequence[int], name: str) -> Demand:
+    each = dict.fromkeys(seeds, plan.steps)
+    return Demand(plan.config, digest(plan.config), each, 0, plan.founders, plan.networks, plan.rules, name)
+
+
+def _run_and_step(source: str) -> tuple[Path, int | None]:
+    """A run and the step of one of its checkpoints, from RUN or RUN@STEP."""
+    folder, at, step = source.rpartition("@")
+    if not at or Path(source).is_dir():
+        return Path(source), None
+    if not step.isdecimal() or len(step) > 12:
+        raise AssayError(f"{brief(source)}: {brief(step)} is not a step: give RUN or RUN@STEP, as in runs/past@102400")
+    return Path(folder), int(step)

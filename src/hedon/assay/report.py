@@ -1,5 +1,6 @@
 """What all assays write: their worlds, and what was found."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -58,3 +59,10 @@ def world_line(samples: Sequence[Sample]) -> str:
 def estimate_row(labels: Mapping[str, Any], estimate: Estimate) -> dict[str, Any]:
     """A row with a value and its interval."""
     return {**labels, "value": estimate.value, "low": estimate.low, "high": estimate.high}
+
+
+def finite_row(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row with None for numbers that have no value."""
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in row.items()
+    }

@@ -1,7 +1,6 @@
 """The tables, the JSON summary and the figure of fitness against frequency."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -9,7 +8,7 @@ from matplotlib.figure import Figure
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.contest import sample_lines
 from hedon.assay.frequency import VERDICTS, Frequency, estimate_frequency
-from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
+from hedon.assay.report import assay_answer, estimate_row, finite_row, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, styled
@@ -73,8 +72,8 @@ def frequency_tables(found: Frequency) -> list[ResultTable]:
     result = f"{first} against {second}, by the share of {first}"
     title = f"Selection coefficient of {first} per generation, by its share among the founders"
     return [
-        make_table("frequency", result, [_finite(row) for row in rows], note),
-        make_table("frequency_share", title, [_finite(row) for row in shares]),
+        make_table("frequency", result, [finite_row(row) for row in rows], note),
+        make_table("frequency_share", title, [finite_row(row) for row in shares]),
     ]
 
 
@@ -104,7 +103,3 @@ def draw_frequency(found: Frequency) -> Figure:
             f"slope {slope.value:.3g}, {slope.low:.3g} to {slope.high:.3g}; {crosses}: {found.verdict}",
         )
     return figure
-
-
-def _finite(row: dict[str, Any]) -> dict[str, Any]:
-    return {name: None if isinstance(value, float) and not np.isfinite(value) else value for name, value in row.items()}

@@ -51,9 +51,9 @@ def read_samples(demands: Sequence[Demand], folder: Path) -> list[Sample]:
     Raises:
         RecordError: a run cannot be read.
     """
-    ensemble = find_ensemble(demands, folder)
     samples = []
-    for demand in demands:
+    for demand in demands:  # each by itself: futures of one world and fresh worlds may have equal settings and seeds
+        ensemble = find_ensemble([demand], folder)
         keys = [(demand.digest, seed, species) for seed in demand.steps for species in demand.config.species]
         worlds = tuple(ensemble.worlds[key].until(demand.steps[key[1]]) for key in keys if key in ensemble.worlds)
         samples.append(Sample(demand, ensemble.runs_of(worlds), worlds))

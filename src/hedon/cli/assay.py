@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hedon.cli.assay_option import SOURCES, AssayOptions, ContestOptions, Source, Species, StabilityOptions
+from hedon.cli.assay_option import (
+    SOURCES,
+    AssayOptions,
+    ContestOptions,
+    ContingencyOptions,
+    Source,
+    Species,
+    StabilityOptions,
+)
 from hedon.cli.option import with_options
 
 if TYPE_CHECKING:
@@ -215,3 +223,40 @@ def stability(
     configs = {part: stability_config(config, parse_point(point, config)) for part, point in points.items()}
     wanted = [options.worlds(each, None, part) for part, each in configs.items()]
     options.answer("stability", wanted, partial(stability_answer, list(points.values())))
+
+
+@app.command()
+@with_options(ContingencyOptions)
+def contingency(
+    runs: Annotated[
+        list[str], typer.Argument(metavar="RUN[@STEP]…", help="Runs, each at its end or at one of its checkpoints.")
+    ],
+    of: Annotated[
+        str | None, typer.Option(metavar="SEEDS", help="The worlds that have futures; by default all of the runs.")
+    ] = None,
+    fresh: Annotated[
+        str | None, typer.Option(metavar="SEEDS", help="Fresh worlds to compare with; by default those of --seeds.")
+    ] = None,
+    *,
+    options: ContingencyOptions,
+) -> None:
+    """Replay the tape: was the outcome settled, or left to chance?
+
+    Each world of the runs has several futures, one for each of --seeds, and as many worlds begin afresh. If futures of
+    one world end as far apart as fresh worlds do, nothing was settled when they parted. Prints the ratio of both
+    distances for weights, numbers and lineages, with intervals, and whether the same agents have descendants in all
+    futures. --steps is the total, the past included. Ctrl-C ends it, and the same command goes on.
+
+    \b
+    Examples:
+      hedon assay contingency runs/past --steps 204800
+      hedon assay contingency runs/early runs/late --of 1-4 --seeds 101-110 --fresh 101-130 --steps 204800
+    """
+    from hedon.assay.option import contingency_worlds
+    from hedon.assay.report_contingency import contingency_answer
+    from hedon.experiment.argument import parse_seeds
+
+    chosen = None if of is None else parse_seeds(of, "--of")
+    seeds = parse_seeds(options.seeds, "--seeds")
+    begun = seeds if fresh is None else parse_seeds(fresh, "--fresh")
+    options.answer("contingency", contingency_worlds(runs, chosen, seeds, begun, options.steps), contingency_answer)

@@ -36,10 +36,6 @@ Species = Annotated[
 class _Worlds:
     seeds: Seeds = "1-10"
     steps: Annotated[int, typer.Option(help="Steps of each world.", min=1, max=MAX_STEPS)] = STEPS
-    fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or as_printed.")] = None
-    overrides: Annotated[
-        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
-    ] = None
     out: Annotated[
         Path | None, typer.Option(help="Folder of the assay; by default one under assays/ for these settings.")
     ] = None
@@ -48,20 +44,8 @@ class _Worlds:
 
 
 @dataclass(frozen=True)
-class AssayOptions(ClusterOptions, _Worlds):
+class WorldOptions(ClusterOptions, _Worlds):
     """The options of every assay: its worlds, and how they are run."""
-
-    def config(self, source: str) -> "Config":
-        """The condition with its changes. ConfigError: it cannot be used."""
-        from hedon.config.load import load_config
-
-        return load_config(source, self.fidelity, self.overrides or ())
-
-    def worlds(self, config: "Config", founders: "Founders | None", part: str = "run") -> "Demand":
-        """Worlds that the assay needs."""
-        from hedon.assay.option import assay_worlds
-
-        return assay_worlds(config, parse_seeds(self.seeds, "--seeds"), self.steps, founders, part)
 
     def answer(self, kind: str, demands: "Sequence[Demand]", ask: "Callable[[Sequence[Sample]], Answer]") -> None:
         """Makes the worlds of an assay, or reads them, and prints and writes what they tell.
@@ -95,6 +79,38 @@ class AssayOptions(ClusterOptions, _Worlds):
         files = write_answer(folder, answer)
         console.print(analysis_group({table.name: table for table in answer.tables}))
         console.print(f"wrote {', '.join(map(str, files))}", soft_wrap=True)
+
+
+@dataclass(frozen=True)
+class _Setting:
+    fidelity: Annotated[str | None, typer.Option(help="corrected (default), released or as_printed.")] = None
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
+    ] = None
+
+
+@dataclass(frozen=True)
+class AssayOptions(WorldOptions, _Setting):
+    """The options of an assay whose worlds begin in a condition: which changes it has, then those of every assay."""
+
+    def config(self, source: str) -> "Config":
+        """The condition with its changes. ConfigError: it cannot be used."""
+        from hedon.config.load import load_config
+
+        return load_config(source, self.fidelity, self.overrides or ())
+
+    def worlds(self, config: "Config", founders: "Founders | None", part: str = "run") -> "Demand":
+        """Worlds that the assay needs."""
+        from hedon.assay.option import assay_worlds
+
+        return assay_worlds(config, parse_seeds(self.seeds, "--seeds"), self.steps, founders, part)
+
+
+@dataclass(frozen=True)
+class ContingencyOptions(WorldOptions):
+    """The same with seeds that are none of a first run's."""
+
+    seeds: Seeds = "101-110"
 
 
 @dataclass(frozen=True)

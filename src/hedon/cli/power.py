@@ -64,10 +64,12 @@ def power(
         if not sd or sd < 0 or by or only:
             raise PowerError("--sd: must be above 0, and needs no --by or --only")
         found, name = [PilotSpread("measure", design, sd, sd, sd, 0) for design in (ALONE, APART)], ""
+        cautions: tuple[str, ...] = ()
     else:
         pilot = read_sources(source, other)
         found, name = spreads(pilot, by or (SOURCE if other else None), between, columns(only)), pilot.name
-    answer = power_answer(found, sizes, chance, level, name)
+        cautions = pilot.cautions
+    answer = power_answer(found, sizes, chance, level, name, cautions)
     console = make_console()
     console.print(analysis_group({table.name: table for table in answer.tables}))
     if out is not None:

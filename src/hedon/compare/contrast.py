@@ -167,7 +167,7 @@ def compare_answer(
         known = [name for name in shown if first[name].count() and second[name].count()]
         shown = {name: shown[name] for name in known}
     found = compare(first, second, shown, held, paired=paired)
-    tables = [_contrasts(found, names, others), *_extinct(first, second, names)]
+    tables = [_contrasts(found, names, others, worlds.cautions), *_extinct(first, second, names)]
     content = {"source": worlds.name, "by": by, "between": list(levels), "also_differs": others}
     content |= {"steps": worlds.steps} if worlds.steps else {}
     intro = f"{by}: {names[1]} against {names[0]}"
@@ -177,7 +177,9 @@ def compare_answer(
     return simple_answer("compare", title, content, tables, intro, [figure])
 
 
-def _contrasts(found: Sequence[Compared], names: Sequence[str], others: Sequence[str]) -> ResultTable:
+def _contrasts(
+    found: Sequence[Compared], names: Sequence[str], others: Sequence[str], cautions: Sequence[str]
+) -> ResultTable:
     rows = []
     for each, corrected in zip(found, holm([each.contrast.p for each in found]), strict=True):
         contrast, values, second = each.contrast, each.matched.values, each.matched.others
@@ -208,7 +210,7 @@ def _contrasts(found: Sequence[Compared], names: Sequence[str], others: Sequence
     if 0 < most < SIGNIFICANT_PAIRS:
         note += f" With {count(most, 'pair')}, no p is below {2 / 2**most:.2g}: take at least {SIGNIFICANT_PAIRS}."
     note += f" The conditions differ in {', '.join(others)} too: the design does not cross them." if others else ""
-    return make_table("contrast", f"{names[1]} against {names[0]}", rows, note)
+    return make_table("contrast", f"{names[1]} against {names[0]}", rows, " ".join([note, *cautions]))
 
 
 def _extinct(first: pl.DataFrame, second: pl.DataFrame, names: Sequence[str]) -> list[ResultTable]:

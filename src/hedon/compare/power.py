@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import polars as pl
@@ -119,9 +119,11 @@ def power_answer(
     power: float = 0.8,
     level: float = 0.05,
     pilot: str = "",
+    cautions: Sequence[str] = (),
 ) -> Answer:
     """How many worlds are needed, for each measure and design; without effects, what some numbers of worlds see."""
-    tables = [_needed(found, effects, power, level)] if effects else [_seen(found, power, level)]
+    table = _needed(found, effects, power, level) if effects else _seen(found, power, level)
+    tables = [replace(table, note=" ".join([table.note, *cautions]))]
     content = {"pilot": pilot, "power": power, "level": level, "effects": list(effects)}
     content["spreads"] = [vars(each) for each in found]
     intro = f"From {pilot}. " if pilot else ""

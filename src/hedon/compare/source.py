@@ -8,6 +8,7 @@ from typing import Any
 
 import polars as pl
 
+from hedon.analysis.world.future import shared_pasts
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.compare.error import CompareError
 from hedon.ensemble.collect import collect, table_value
@@ -16,7 +17,7 @@ from hedon.ensemble.store import Store
 from hedon.measure.catalogue import world_row
 from hedon.record.folder import holds_run
 from hedon.record.reader import open_run
-from hedon.report.answer import FACTORS, WORLDS
+from hedon.report.answer import CAUTIONS, FACTORS, WORLDS
 
 SOURCE, CONDITION = "source", "condition"
 """Factors of worlds from two sources, and of runs with several configs."""
@@ -33,6 +34,7 @@ class WorldTable:
         factors: Columns that distinguish conditions.
         steps: The length of each world, if all have the same [step].
         planned: The values of each factor in the order of a sweep's plan, including those without a world so far.
+        cautions: Sentences about worlds that are not independent.
     """
 
     name: str
@@ -40,6 +42,7 @@ class WorldTable:
     factors: tuple[str, ...] = ()
     steps: int | None = None
     planned: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    cautions: tuple[str, ...] = ()
 
 
 def read_table(source: str) -> WorldTable:
@@ -50,7 +53,7 @@ def read_table(source: str) -> WorldTable:
         RecordError, ConfigError, EnsembleError: It cannot be read.
     """
     runs = _run_folders(source)
-    return _runs_table(source, _records(runs)) if runs else _other_table(source)
+    return _runs_table(source, _records(runs), _cautions(runs)) if runs else _other_table(source)
 
 
 def read_both(sources: tuple[str, str]) -> WorldTable:
@@ -68,7 +71,8 @@ def read_both(sources: tuple[str, str]) -> WorldTable:
         end = min(world.end_step for each in records for world in each)
         records = [[world.until(end) for world in each] for each in records]
     tables = [
-        _runs_table(source, own) if own else _other_table(source) for source, own in zip(sources, records, strict=True)
+        _runs_table(source, own, _cautions(runs)) if own else _other_table(source)
+        for source, own, runs in zip(sources, records, folders, strict=True)
     ]
     for table in tables:
         if CONDITION in table.factors and folders[sources.index(table.name)]:
@@ -91,7 +95,9 @@ def read_both(sources: tuple[str, str]) -> WorldTable:
         for table in tables
     ]
     rows = pl.concat(parts, how="diagonal_relaxed")
-    return WorldTable(" and ".join(sources), rows, (SOURCE, *factors), lengths[0] if len(set(lengths)) == 1 else None)
+    steps = lengths[0] if len(set(lengths)) == 1 else None
+    cautions = (*tables[0].cautions, *tables[1].cautions)
+    return WorldTable(" and ".join(sources), rows, (SOURCE, *factors), steps, cautions=cautions)
 
 
 def _run_folders(source: str) -> list[Path]:
@@ -115,7 +121,11 @@ def _records(folders: Sequence[Path]) -> list[WorldRecord]:
     return [world if world.run in whole else world.until(world.recorded_step()) for world in read_worlds(runs)]
 
 
-def _runs_table(source: str, records: Sequence[WorldRecord]) -> WorldTable:
+def _cautions(folders: Sequence[Path]) -> tuple[str, ...]:
+    return tuple(shared_pasts([open_run(each) for each in folders]))
+
+
+def _runs_table(source: str, records: Sequence[WorldRecord], cautions: tuple[str, ...]) -> WorldTable:
     """The worlds of some runs, up to the step that all of them were planned to reach."""
     end = min(world.end_step for world in records)
     if end < 1:
@@ -126,7 +136,7 @@ def _runs_table(source: str, records: Sequence[WorldRecord]) -> WorldTable:
         worlds.setdefault((condition, world.seed), []).append(world.until(end))
     several = len({condition for condition, _ in worlds}) > 1
     rows = [({CONDITION: condition} if several else {}) | world_row(each) for (condition, _), each in worlds.items()]
-    return WorldTable(source, _frame(rows), (CONDITION,) if several else (), end)
+    return WorldTable(source, _frame(rows), (CONDITION,) if several else (), end, cautions=cautions)
 
 
 def _other_table(source: str) -> WorldTable:
@@ -143,7 +153,8 @@ def _other_table(source: str) -> WorldTable:
         raise CompareError(f"{source}: holds no worlds to compare: give {KINDS}")
     steps = content.get("steps")
     rows = _frame(content["tables"][WORLDS]["rows"])
-    return _checked(WorldTable(source, rows, tuple(content.get(FACTORS, ())), steps))
+    cautions = tuple(content.get(CAUTIONS, ()))
+    return _checked(WorldTable(source, rows, tuple(content.get(FACTORS, ())), steps, cautions=cautions))
 
 
 def _sweep_table(source: str, store: Store) -> WorldTable:

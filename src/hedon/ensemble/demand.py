@@ -2,14 +2,31 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from hedon.config import Config
 from hedon.config.load import changed_settings
 from hedon.config.problem import format_value
 from hedon.ensemble.error import EnsembleError
 from hedon.record.founder import Founders
-from hedon.record.manifest import RuleSource
+from hedon.record.manifest import Manifest, RuleSource
+from hedon.record.network import Networks
 from hedon.record.reader import Run
+
+
+@dataclass(frozen=True)
+class Past:
+    """A world at a checkpoint, from which other worlds go on, each with chances of its own.
+
+    Attributes:
+        run: folder of the world's run.
+        step: of the checkpoint [step].
+        seed: of the world.
+    """
+
+    run: Path
+    step: int
+    seed: int
 
 
 @dataclass
@@ -22,8 +39,10 @@ class Demand:
         steps: of each seed [step].
         frames: steps between two records of all positions; 0 where nobody needs them.
         founders: genomes that its worlds begin with; None where they are drawn from the setting's laws.
+        networks: that agents begin with that never learn; None for new ones.
         rules: texts of the rules that the config is pinned to.
         name: of the folder of a new run; empty for one that tells the setting from all others.
+        past: that its worlds share; None where each begins at its own beginning.
     """
 
     config: Config
@@ -31,8 +50,18 @@ class Demand:
     steps: dict[int, int] = field(default_factory=dict)
     frames: int = 0
     founders: Founders | None = None
+    networks: Networks | None = None
     rules: Sequence[RuleSource] = ()
     name: str = ""
+    past: Past | None = None
+
+    def holds(self, manifest: Manifest) -> bool:
+        """Whether the worlds of a run are of this setting and have this past."""
+        parent, past = manifest.parent, self.past
+        # The name of the old run's folder does not matter: setting, seed and step determine the world.
+        begun = None if parent is None else (parent.config_digest, parent.step, parent.seed)
+        wanted = None if past is None else (self.digest, past.step, past.seed)
+        return manifest.config_digest == self.digest and begun == wanted
 
     def has_frames(self, run: Run) -> bool:
         """Whether a run recorded the positions that are needed."""

@@ -78,15 +78,14 @@ def find_ensemble(demands: Sequence[Demand], folder: Path) -> Ensemble:
 
     A run that cannot be read is a fault if it may hold one of them.
     """
-    seeds = {demand.digest: demand.steps.keys() for demand in demands}
     presets = {(demand.config.preset, demand.config.fidelity) for demand in demands}
     runs, faults = [], []
     for path in sorted(folder.glob(f"*/{MANIFEST}")):
         try:
             run = open_run(path.parent).load()
             manifest = run.manifest
-            mine = seeds.get(manifest.config_digest or "", ())
-            is_wanted = manifest.parent is None and any(seed in mine for seed in manifest.seeds)
+            mine = [demand for demand in demands if demand.holds(manifest)]
+            is_wanted = any(seed in demand.steps for demand in mine for seed in manifest.seeds)
             # A config that this version cannot read, as one that lacks a setting, might be one that is wanted.
             if is_wanted or (manifest.preset, manifest.fidelity) in presets:
                 _ = run.config

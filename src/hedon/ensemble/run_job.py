@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hedon.config import Config, digest
-from hedon.ensemble.demand import Demand, setting_name
+from hedon.ensemble.demand import Demand, Past, setting_name
 from hedon.ensemble.ensemble import Ensemble, steps_reached
+from hedon.experiment.branch import plan_branch, start_branch
 from hedon.experiment.plan import Callback, RunPlan, free_folder, seed_span
 from hedon.experiment.resume import make, require_setting
-from hedon.record.folder import CHECKPOINT_SECONDS, checkpoint_paths
+from hedon.record.folder import CHECKPOINT_SECONDS, checkpoint_paths, holds_run
 
 LONGEST_NAME = 150
 """Most characters of a setting in the name of a run's folder."""
@@ -23,10 +24,12 @@ class RunJob:
     Attributes:
         plan: of the run; its threads are given when it begins.
         world_steps: steps still to run, summed over its worlds [step].
+        past: from which its worlds go on; None where they begin.
     """
 
     plan: RunPlan
     world_steps: int
+    past: Past | None = None
 
     @property
     def folder(self) -> Path:
@@ -63,7 +66,14 @@ class RunJob:
 
     def make(self, threads: int, callback: Callback | None) -> str:
         """Begins, continues, or only reads the run; see `hedon.experiment.resume.make`."""
-        return make(replace(self.plan, threads=threads), () if callback is None else (callback,)).status
+        plan, callbacks = replace(self.plan, threads=threads), () if callback is None else (callback,)
+        if self.past is None or holds_run(plan.out):
+            return make(plan, callbacks).status
+        past, every = self.past, plan.checkpoint_seconds
+        begun = plan_branch(
+            past.run, plan.out, (), past.step, plan.steps, threads, plan.frames, every, plan.seeds, past.seed
+        )
+        return start_branch(begun, callbacks).status
 
 
 def run_jobs(ensemble: Ensemble, checkpoint_seconds: float = CHECKPOINT_SECONDS) -> list[RunJob]:
@@ -76,7 +86,7 @@ def run_jobs(ensemble: Ensemble, checkpoint_seconds: float = CHECKPOINT_SECONDS)
     """
     jobs: list[RunJob] = []
     for demand in ensemble.demands:
-        mine = [run for run in ensemble.runs if run.manifest.config_digest == demand.digest and demand.has_frames(run)]
+        mine = [run for run in ensemble.runs if demand.holds(run.manifest) and demand.has_frames(run)]
         reach = {run.path: steps_reached(run) for run in mine}
         too_short: dict[Path, int] = {}
         missing: dict[int, list[int]] = {}
@@ -97,13 +107,15 @@ def run_jobs(ensemble: Ensemble, checkpoint_seconds: float = CHECKPOINT_SECONDS)
                 require_setting(ensemble.folder / demand.name, demand.digest)
             name = demand.name or f"{folder_name(demand.config)}-{seed_span(seeds)}"
             free = free_folder(ensemble.folder / name, [job.folder for job in jobs])
-            jobs.append(_job(demand, seeds, steps, free, checkpoint_seconds, steps * len(seeds)))
+            left = (steps - (demand.past.step if demand.past else 0)) * len(seeds)
+            jobs.append(_job(demand, seeds, steps, free, checkpoint_seconds, left))
     return sorted(jobs, key=lambda job: -job.world_steps)
 
 
 def _job(demand: Demand, seeds: Sequence[int], steps: int, out: Path, checkpoint: float, left: int) -> RunJob:
-    plan = RunPlan(demand.config, seeds, steps, out, 0, demand.frames, checkpoint, demand.founders, rules=demand.rules)
-    return RunJob(plan, left)
+    begin, rules = (demand.founders, demand.networks), demand.rules
+    plan = RunPlan(demand.config, seeds, steps, out, 0, demand.frames, checkpoint, *begin, rules=rules)
+    return RunJob(plan, left, demand.past)
 
 
 def folder_name(config: Config) -> str:

@@ -16,8 +16,9 @@ from hedon.report.earlier import earlier_names
 from hedon.report.page import FigureFile, Page, PageSection, html_page, markdown_page
 from hedon.report.table import table_json
 
-WORLDS, FACTORS = "world", "factors"
-"""In the JSON of an assay or a study: its table with a row per world, and the columns that distinguish conditions."""
+WORLDS, FACTORS, CAUTIONS = "world", "factors", "cautions"
+"""In the JSON of an assay or a study: its table with a row per world, the columns that distinguish conditions, and
+sentences about worlds that are not independent."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
+from hedon.analysis.world.future import shared_pasts
 from hedon.analysis.world.record import Conditions
 from hedon.config.color import food_colors
 from hedon.demography.forecast import setting_warnings
@@ -118,20 +119,6 @@ def report_page(analysis: Analysis, figures: Mapping[str, Sequence[FigureFile]])
         analysis.conditions,
         analysis.runs,
     )
-
-
-def shared_pasts(runs: Sequence[Run]) -> list[str]:
-    """A sentence for each run whose worlds are futures of one world: they are not independent."""
-    told = []
-    for run in runs:
-        parent = run.manifest.parent
-        if parent is not None and parent.seed is not None:
-            told.append(
-                f"The worlds of {run.path.name} are futures of one world (seed {parent.seed} of {parent.folder}) from "
-                f"step {parent.step:,} on. They share its past, so intervals and tests are about its futures, "
-                "not about independent worlds."
-            )
-    return told
 
 
 def narrow_intervals(conditions: Conditions) -> list[str]:

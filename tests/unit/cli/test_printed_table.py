@@ -5,6 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
+from hedon.cli.console import make_console
 from hedon.cli.display.run import RunDisplay
 from hedon.cli.display.table import PrintedTable
 from hedon.experiment.plan import Moment
@@ -24,7 +25,7 @@ ROWS = [
 
 
 def printed(width: int, table: PrintedTable) -> list[str]:
-    console = Console(width=width, file=io.StringIO(), color_system=None)
+    console = Console(width=width, file=io.StringIO(), color_system=None, force_terminal=True)
     console.print(table)
     assert isinstance(console.file, io.StringIO)
     return console.file.getvalue().splitlines()
@@ -106,3 +107,21 @@ def test_the_display_of_a_run_fits_and_tells_who_died_out() -> None:
     assert "+0.250" in text
     assert "generation" in text
     assert "Seed 2 died out at step 1,500." in text
+
+
+def test_in_a_file_each_row_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    label = "baseline (corrected): energy.basic_cost 0.002, food.normal.growth_rate 3"
+    headers = ("condition", "gene", *(f"measure of column {i}" for i in range(12)))
+    rows = [(label, gene, *(f"{i / 7:.6f}" for i in range(12))) for gene in ("w_normal", "w_action")]
+    make_console().print(PrintedTable(headers, rows, text=(0, 1)))
+    head, _, *lines = [line for line in capsys.readouterr().out.splitlines() if line.strip()]
+    assert [name.strip() for name in head.split("   ") if name.strip()] == list(headers)
+    assert [line.split() for line in lines] == [" ".join(row).split() for row in rows]
+
+
+def test_a_terminal_shows_a_long_label_once() -> None:
+    long = "predator (corrected): prey"
+    rows = [(long, "w_normal", "1"), (long, "w_action", "2"), ("short", "w_normal", "3"), ("short", "w_action", "4")]
+    lines = printed(80, PrintedTable(("condition", "gene", "mean"), rows, text=(0, 1)))
+    assert sum(long in line for line in lines) == 1
+    assert sum("short" in line for line in lines) == 2

@@ -1,4 +1,7 @@
-"""Tables on a terminal of any width: what does not fit beside the rest is continued below."""
+"""Tables on a terminal of any width: what does not fit beside the rest is continued below.
+
+In a file each row is one line, for programs that read it.
+"""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -63,8 +66,12 @@ class PrintedTable:
         """Gives the title and the tables that fit into the width at hand."""
         if self._title:
             yield Text(self._title, style="bold")
-        for columns in self._parts(options.max_width):
-            yield self._draw(columns, options.max_width)
+        if console.is_terminal:
+            for columns in self._parts(options.max_width):
+                yield self._draw(columns, options.max_width, shorten=True)
+        else:
+            whole = sum(column.most for column in self._columns) + _GAP * (len(self._columns) - 1) + _EDGES
+            yield from console.render(self._draw(self._columns, whole, shorten=False), options.update_width(whole))
 
     def _parts(self, width: int) -> list[list[_Column]]:
         """The columns of each table, from top to bottom."""
@@ -75,12 +82,13 @@ class PrintedTable:
             parts[-1] = [*parts[-1], column]
         return parts
 
-    def _draw(self, columns: Sequence[_Column], width: int) -> Table:
+    def _draw(self, columns: Sequence[_Column], width: int, *, shorten: bool) -> Table:
         table = Table(box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
         for column, own in zip(columns, _widths(columns, width), strict=True):
             side = "left" if column.is_text else "right"
             table.add_column(Text(column.header), justify=side, width=own, overflow="fold")
-        rows = list(zip(*(column.cells for column in columns), strict=True))
+        first, *others = (column.cells for column in columns)
+        rows = list(zip(_once(first) if columns[0].is_text and shorten else first, *others, strict=True))
         for i, row in enumerate(rows):
             if self._total and i == len(rows) - 1:
                 table.add_section()
@@ -94,6 +102,14 @@ def _column(header: str, cells: tuple[str, ...], *, is_text: bool) -> _Column:
     words = [word for text in ([header, *lines] if is_text else [header]) for word in text.split()]
     least = max(map(cell_len, [*words, *([] if is_text else lines)]), default=1)
     return _Column(header, cells, is_text, max(least, min(most, _READABLE)) if is_text else least, most)
+
+
+def _once(labels: Sequence[str]) -> list[str]:
+    """The same labels, but a long one that stands in several rows in succession only in the first."""
+    return [
+        "" if len(label) > _READABLE and label == before else label
+        for label, before in zip(labels, ["", *labels], strict=False)
+    ]
 
 
 def _key_count(columns: Sequence[_Column]) -> int:

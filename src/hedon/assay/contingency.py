@@ -1,0 +1,266 @@
+"""Was the outcome settled, or left to chance? Futures of one world are compared with worlds that begin afresh."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import polars as pl
+
+from hedon.analysis.descent.genealogy import genealogy, shares_of_descent
+from hedon.analysis.world.population import last_generation
+from hedon.analysis.world.record import SEED, WorldRecord
+from hedon.assay.resample import Floats
+from hedon.assay.sample import Sample
+from hedon.ensemble.demand import Past
+from hedon.measure.catalogue import MEASURES, gene_mean
+from hedon.measure.measure import Measure
+from hedon.statistic.correction import holm
+from hedon.statistic.law import t_above, t_quantile
+from hedon.statistic.minimum import FOR_INTERVAL
+
+FATES = ("alive_mean", "mean_energy", "generation")
+"""Measures of a world's end. Others sum over a world's whole history, which fresh worlds and futures do not share."""
+LINEAGES, NEUTRAL = "lineages", "neutral genes"
+DRAWS = 2000
+"""Permutations behind a chance."""
+UNKNOWN = (math.nan, math.nan, math.nan, math.nan)
+"""A ratio, its interval and its chance, where there are none."""
+Futures = tuple[Past, Sample]
+"""A world at a step, and the worlds that go on from it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Divergence:
+    """How far apart the futures of a world end, compared with fresh worlds, in one measure.
+
+    Attributes:
+        step: at which the futures part [step].
+        generation: mean of the living at that step in fresh worlds.
+        measure: its name, with the species before it where there are several.
+        pasts: number of worlds that have futures.
+        futures, fresh: number of worlds of each kind that have a value.
+        apart: mean distance between two futures of one world, on the scale on which the measure is compared; over
+            several genes, their mean distance.
+        fresh_apart: mean distance between two fresh worlds.
+        ratio: `apart` / `fresh_apart`: near 0 if the outcome was settled by then, 1 if nothing was.
+        low, high: 95 % interval of the ratio; NaN with too few worlds.
+        p: two-sided chance of a ratio this far from 1 if the distances were equal.
+        p_holm: corrected for all measures and steps.
+    """
+
+    step: int
+    generation: float
+    measure: str
+    pasts: int
+    futures: int
+    fresh: int
+    apart: float
+    fresh_apart: float
+    ratio: float
+    low: float
+    high: float
+    p: float
+    p_holm: float = math.nan
+
+
+@dataclass(frozen=True, eq=False)
+class Overlap:
+    """Whether the same agents have descendants in all futures of a world.
+
+    Attributes:
+        past: seed of the world.
+        step: at which its futures part [step].
+        species: whose agents.
+        agents: how many lived then.
+        everywhere: how many of them have living descendants in every future.
+        nowhere: how many have none in any.
+        overlap: the part of two futures' living that descends from the same agents in both, mean over pairs.
+        chance: the same if the agents of that time were interchangeable.
+        p: chance of such an overlap, or a larger one, if they were.
+        p_holm: corrected for all worlds, steps and species.
+    """
+
+    past: int
+    step: int
+    species: str
+    agents: int
+    everywhere: int
+    nowhere: int
+    overlap: float
+    chance: float
+    p: float
+    p_holm: float = math.nan
+
+
+def measures_of(world: WorldRecord) -> dict[str, list[Measure]]:
+    """What futures and fresh worlds can be compared by: each weight, all neutral genes together, and numbers."""
+    found = {f"{gene}_mean": [gene_mean(gene)] for gene in world.reward_names}
+    if world.neutral_names:
+        found[NEUTRAL] = [gene_mean(gene) for gene in world.neutral_names]
+    return found | {name: [MEASURES[name]] for name in FATES if MEASURES[name].applies(world)}
+
+
+def lineages_since(step: int) -> Measure:
+    """The effective number of agents of a step from which the living at the end descend."""
+
+    def of(world: WorldRecord) -> float | None:
+        share = descent_shares(world, step)["share"].to_numpy()
+        return 1.0 / float((share**2).sum()) if share.sum() > 0 else None
+
+    return Measure(LINEAGES, "effective number of lineages since then", of, ratio=True)
+
+
+def descent_shares(world: WorldRecord, step: int) -> pl.DataFrame:
+    """Which part of the living at the end descends from each agent that lived at a step.
+
+    Returns:
+        Columns agent_id and share, by agent_id. The shares sum to 1, or are all 0 in an extinct world.
+    """
+    lived = pl.col("death_step").is_null() | (pl.col("death_step") > step)
+    old = pl.col("birth_step") <= step
+    parents = [name for name in ("parent_id", "mate_id") if name in world.agents.columns]
+    # Those who lived then count for themselves, also where one is the parent of another.
+    rows = world.agents.filter(lived | ~old).sort("agent_id")
+    rows = rows.with_columns(pl.when(~old).then(pl.col(parents)))
+    tree = genealogy(rows)
+    share = shares_of_descent(tree, rows, tree.alive.astype(np.float64)) / max(int(tree.alive.sum()), 1)
+    return rows.select("agent_id", old.alias("old"), share=share).filter("old").drop("old")
+
+
+def diverged(fresh: Sample, futures: Sequence[Futures]) -> list[Divergence]:
+    """Compares futures with fresh worlds, for each step from which there are futures, by species and measure."""
+    found = []
+    for step in sorted({past.step for past, _ in futures}):
+        mine = [sample for past, sample in futures if past.step == step]
+        for species, worlds in _by_species(fresh).items():
+            before = f"{species}." if len(fresh.demand.config.species) > 1 else ""
+            groups = [_by_species(each).get(species, []) for each in mine]
+            generation = _generation_at(step, worlds)
+            for name, measures in {**measures_of(worlds[0]), LINEAGES: [lineages_since(step)]}.items():
+                values = [_values(measures, group) for group in groups]
+                found.append(_divergence(step, generation, f"{before}{name}", values, _values(measures, worlds)))
+    corrected = holm([each.p for each in found])
+    return [replace(each, p_holm=p) for each, p in zip(found, corrected, strict=True)]
+
+
+def overlaps(futures: Sequence[Futures]) -> list[Overlap]:
+    """Whether the same agents have descendants in all futures, for each world that has futures."""
+    found = []
+    for past, sample in futures:
+        for species, worlds in _by_species(sample).items():
+            shares = [descent_shares(world, past.step)["share"].to_numpy() for world in worlds]
+            living = [each for each in shares if each.sum() > 0]
+            if len(living) > 1:
+                found.append(overlap(past.seed, past.step, species, np.stack(living)))
+    corrected = holm([each.p for each in found])
+    return [replace(each, p_holm=p) for each, p in zip(found, corrected, strict=True)]
+
+
+def _by_species(sample: Sample) -> dict[str, list[WorldRecord]]:
+    found: dict[str, list[WorldRecord]] = {}
+    for world in sample.worlds:
+        found.setdefault(world.species, []).append(world)
+    return found
+
+
+def _generation_at(step: int, worlds: Sequence[WorldRecord]) -> float:
+    """Mean generation of the living at a step, over worlds; NaN if none had anyone."""
+    then = [last_generation(world.population.filter(pl.col("step") <= step)) for world in worlds]
+    known = [each for each in then if each is not None]
+    return float(np.mean(known)) if known else math.nan
+
+
+def _values(measures: Sequence[Measure], worlds: Sequence[WorldRecord]) -> Floats:
+    """The measures of each world that has all of them, each on its scale, (worlds, measures)."""
+    found = []
+    for world in worlds:
+        values = [measure.value(world) for measure in measures]
+        known = [measure.scaled(each) for measure, each in zip(measures, values, strict=True) if each is not None]
+        if len(known) == len(measures):
+            found.append(known)
+    return np.array(found, float).reshape(len(found), len(measures))
+
+
+def _divergence(step: int, generation: float, name: str, futures: Sequence[Floats], fresh: Floats) -> Divergence:
+    groups = [group for group in futures if len(group) >= FOR_INTERVAL]
+    enough = bool(groups) and len(fresh) >= FOR_INTERVAL
+    apart, fresh_apart = _mean_distance([group for group in futures if len(group) > 1]), _mean_distance([fresh])
+    ratio, low, high, p = distance_ratio(groups, fresh) if enough else UNKNOWN
+    worlds = (len(futures), sum(map(len, futures)), len(fresh))
+    return Divergence(step, generation, name, *worlds, apart, fresh_apart, ratio, low, high, p)
+
+
+def distance_ratio(groups: Sequence[Floats], fresh: Floats) -> tuple[float, float, float, float]:
+    """The mean distance between two values of one group, divided by that between two fresh values.
+
+    The interval is Student's, of the logarithm, with the jackknife's variance: each value is left out in turn. It is
+    about these groups, not about others that might have been.
+
+    Args:
+        groups: Values of futures of one world, each (n, measures), with n of at least 3.
+        fresh: Independent values, (m, measures), with m of at least 3.
+
+    Returns:
+        The ratio, the ends of its 95 % interval, and the two-sided chance under equal distances; NaN where all
+        values of a side are equal.
+    """
+    apart, without = _mean_distance(groups), [_distances_without(group) for group in groups]
+    whole = [_mean_distance([group]) for group in groups]
+    fresh_apart = _mean_distance([fresh])
+    left_out = [apart + (each - own) / len(groups) for each, own in zip(without, whole, strict=True)]
+    every = [*left_out, _distances_without(fresh)]
+    if not (apart > 0 and fresh_apart > 0 and all((each > 0).all() for each in every)):
+        return UNKNOWN
+    variances = [(len(each) - 1) * float(np.var(np.log(each))) for each in every]
+    inner, outer = sum(variances[:-1]), variances[-1]
+    freedom = sum(len(group) - 1 for group in groups)
+    degrees = (inner + outer) ** 2 / (inner**2 / freedom + outer**2 / (len(fresh) - 1))
+    value, error = math.log(apart / fresh_apart), math.sqrt(inner + outer)
+    reach = t_quantile(0.975, degrees) * error
+    bounds = (math.exp(value - reach), math.exp(value + reach))
+    return math.exp(value), *bounds, 2.0 * t_above(abs(value) / error, degrees)
+
+
+def _mean_distance(groups: Sequence[Floats]) -> float:
+    """The mean distance between two values of one group, groups weighted alike; NaN without two values."""
+    known = [group for group in groups if len(group) > 1]
+    sums = [_summed_distances(group).sum() / (len(group) * (len(group) - 1)) for group in known]
+    return float(np.mean(sums)) if sums else math.nan
+
+
+def _summed_distances(values: Floats) -> Floats:
+    """The distances of each value to all others, summed, (n,)."""
+    return np.abs(values[:, None] - values).mean(axis=2).sum(axis=1)
+
+
+def _distances_without(values: Floats) -> Floats:
+    """The mean distance between two values with each value left out in turn, (n,)."""
+    own, n = _summed_distances(values), len(values)
+    return (own.sum() - 2.0 * own) / ((n - 1) * (n - 2))
+
+
+def overlap(past: int, step: int, species: str, shares: Floats, draws: int = DRAWS) -> Overlap:
+    """The overlap of futures, and what permuted agents would give.
+
+    Args:
+        past: seed of the world.
+        step: at which its futures part [step].
+        species: whose agents.
+        shares: of each agent in each future's living, (futures, agents), with two futures or more.
+        draws: permutations.
+    """
+    rng = np.random.default_rng([SEED, past, step])
+    seen = _mean_overlap(shares)
+    drawn = np.array([_mean_overlap(rng.permuted(shares, axis=1)) for _ in range(draws)])
+    p = (1 + np.count_nonzero(drawn >= seen - 1e-12)) / (1 + draws)
+    everywhere, somewhere = (shares > 0).all(axis=0), (shares > 0).any(axis=0)
+    counts = (shares.shape[1], int(everywhere.sum()), int((~somewhere).sum()))
+    return Overlap(past, step, species, *counts, seen, float(drawn.mean()), p)
+
+
+def _mean_overlap(shares: Floats) -> float:
+    """Σ min(p, q) over agents, mean over all pairs of futures, from (futures, agents)."""
+    ordered = np.sort(shares, axis=0)[::-1]  # the k-th largest share is the smaller one of k pairs
+    futures = len(shares)
+    return float((np.arange(futures) @ ordered).sum() / (futures * (futures - 1) / 2))
