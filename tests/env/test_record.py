@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import gymnasium
 import numpy as np
 import polars as pl
 import pytest
@@ -11,7 +12,9 @@ from worlds import QUICK
 
 from hedon import ArgumentError, RecordError, load_config, make, open_run
 from hedon.check import check_run
+from hedon.env import AgentEnv, AgentVectorEnv, ParallelEnv, SlotVectorEnv
 from hedon.experiment.replay import replay_run
+from hedon.record.reader import Run
 from hedon.report import write_report
 from hedon.report.analysis import analyze, write_analysis
 from hedon.view.index import RunIndex
@@ -88,9 +91,8 @@ def test_a_folder_can_be_read_while_its_worlds_go_on(tmp_path):
     assert open_run(out).population()["step"].to_list() == [64]
     with pytest.raises(RecordError, match="is in use by another run"):
         make(CONFIG, record=out)
-    for call_of in (lambda: worlds.reset(), lambda: worlds.restore(worlds.save())):
-        with pytest.raises(ArgumentError, match="worlds that are recorded only go on"):
-            call_of()
+    with pytest.raises(ArgumentError, match="worlds that are recorded only go on or begin again"):
+        worlds.restore(worlds.save())
     other = worlds.clone()
     other.step(other.actions)  # is not recorded
     worlds.close()
@@ -146,3 +148,103 @@ def test_wrong_arguments_of_records_are_named(tmp_path):
         with pytest.raises(ArgumentError, match=says):
             wrong(CONFIG, **options)
     assert not list(tmp_path.iterdir())
+
+
+def runs_of(folder: Path) -> list[Run]:
+    """The runs of one environment, in the order in which they began."""
+    found = [open_run(each) for each in sorted(folder.iterdir()) if (each / "manifest.json").is_file()]
+    return sorted(found, key=lambda run: (len(run.path.name), run.path.name))
+
+
+def assert_sound(runs: list[Run]) -> None:
+    for run in runs:
+        assert run.manifest.status == "finished"
+        assert check_run(run.path).findings == ()
+        rows, agents = run.population(), run.agents()
+        assert rows["births"].sum() == agents.filter(pl.col("birth_step") > 0).height
+        assert rows["deaths"].sum() == agents["death_step"].count()
+        assert rows["steps"].sum() == sum(run.manifest.steps_done) * max(len(run.columns.species), 1)
+
+
+def test_each_life_of_an_agent_is_a_run_of_its_own(tmp_path):
+    mortal = CONFIG.with_("hazard.alpha_age", 0.05)
+    env, rng = AgentEnv(mortal, seed=9, record=tmp_path / "run", frames=4), np.random.default_rng(1)
+    lengths = []
+    for seed in (3, None, None):
+        env.reset(seed=seed)
+        over, steps = False, 0
+        while not over:
+            _, _, died, cut, _ = env.step(rng.uniform(-1, 1, 2).astype(np.float32))
+            over, steps = died or cut, steps + 1
+        lengths.append(steps)
+    env.reset()  # begins no run without a step
+    env.close()
+    runs = runs_of(tmp_path)
+    assert [run.path.name for run in runs] == ["run", "run-run2", "run-run3"]
+    assert [run.manifest.steps_done for run in runs] == [(steps,) for steps in lengths]
+    assert runs[0].manifest.seeds == (3,)
+    assert len({run.manifest.seeds for run in runs}) == 3
+    assert_sound(runs)
+    assert write_report(runs[1], folder=tmp_path / "report", figures="none")
+
+
+def test_worlds_that_begin_again_one_by_one_are_runs_of_their_own(tmp_path):
+    def drive_both(**record: Any) -> Any:
+        envs, rng = AgentVectorEnv(CONFIG, 3, seed=5, max_steps=90, threads=1, **record), np.random.default_rng(2)
+        envs.reset(seed=8)
+        digests: dict[int, str] = {}
+        for _ in range(200):
+            over = envs._over.copy()
+            worlds = envs.worlds.simulation.worlds
+            before = {world.seed: world.digest() for world in worlds if over[world.index]}
+            envs.step(rng.uniform(-1, 1, (3, 2)).astype(np.float32))
+            digests |= before
+        digests |= {world.seed: world.digest() for world in envs.worlds.simulation.worlds}
+        envs.close()
+        return envs, digests
+
+    _, plain = drive_both()
+    _, recorded = drive_both(record=tmp_path / "run")
+    assert recorded == plain
+    runs = runs_of(tmp_path)
+    assert runs[0].manifest.seeds == (8, 9, 10)
+    assert len(runs) > 3, "some agents died before their time"
+    assert_sound(runs)
+    kept = {seed for run in runs for seed in run.manifest.seeds}
+    assert kept == set(plain)
+
+
+@pytest.mark.parametrize("kind", ["parallel", "slots", "masks"])
+def test_records_of_every_environment_are_runs(tmp_path, kind):
+    rng, record = np.random.default_rng(3), {"record": tmp_path / "run", "frames": 16}
+    if kind == "parallel":
+        env = ParallelEnv(CONFIG, seed=2, max_steps=70, **record)
+        for _ in range(2):
+            env.reset()
+            while env.agents:
+                env.step({name: rng.uniform(-1, 1, 2).astype(np.float32) for name in env.agents})
+        env.close()
+    elif kind == "slots":
+        slots = SlotVectorEnv(make(CONFIG, 2, seed=2, max_steps=70, **record))
+        slots.reset(seed=4)
+        for _ in range(160):
+            slots.step(rng.uniform(-1, 1, (slots.num_envs, 2)).astype(np.float32))
+        slots.close()
+    else:
+        with make(PAIR, 4, seed=2, threads=1, **record) as worlds:
+            for _ in range(150):
+                mask = rng.random(4) < 0.05
+                if mask.any():
+                    worlds.reset(options={"reset_mask": mask})
+                worlds.step(worlds.actions)
+    runs = runs_of(tmp_path)
+    assert len(runs) >= 2
+    assert_sound(runs)
+
+
+def test_a_gymnasium_id_takes_a_folder(tmp_path):
+    env = gymnasium.make("hedon/small-v0", record=str(tmp_path / "run"))
+    env.reset(seed=1)
+    env.step(env.action_space.sample())
+    env.close()
+    assert open_run(tmp_path / "run").manifest.steps_done == (1,)

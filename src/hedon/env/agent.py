@@ -79,6 +79,8 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             None to leave their motors in the middle of their range.
         render_mode: What `render` gives.
         threads: One world of usual size is fastest on one.
+        record: Folder for the records of its worlds, one run for each that begins; call `close` at the end.
+        frames: Steps of the world between two frames of the records; 0 for none.
         overrides: Settings that differ from those of the preset or file.
 
     Raises:
@@ -99,10 +101,23 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         others: Policy | None = None,
         render_mode: str | None = None,
         threads: int = 1,
+        record: Path | str | None = None,
+        frames: int = 0,
         overrides: Iterable[str] = (),
     ) -> None:
         self._vector = make(
-            config, 1, seed, species, actions, repeat, max_steps, render_mode, threads, overrides=overrides
+            config,
+            1,
+            seed,
+            species,
+            actions,
+            repeat,
+            max_steps,
+            render_mode,
+            threads,
+            record=record,
+            frames=frames,
+            overrides=overrides,
         )
         self._group = one_group(self._vector)
         self._others = require_policy(others)
@@ -173,6 +188,10 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     def render(self) -> Any:
         """A picture of the world: see `VectorEnv.render`."""
         return self._vector.render()
+
+    def close(self) -> None:
+        """Ends the records and closes the window, if there are any."""
+        self._vector.close()
 
     def _seen(self) -> NDArray[np.float32]:
         return self._group.observations[0, self._slot].copy()

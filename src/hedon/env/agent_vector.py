@@ -33,6 +33,8 @@ class AgentVectorEnv(WorldsVectorEnv):
         others: Acts for the others of the species, from observations (worlds · slots, entries) to actions.
         render_mode: What `render` gives.
         threads: As in `hedon.Simulation`; changes no result.
+        record: Folder for the records of its worlds, one run for each that begins; call `close` at the end.
+        frames: Steps of the world between two frames of the records; 0 for none.
         overrides: Settings that differ from those of the preset or file.
 
     Raises:
@@ -53,10 +55,23 @@ class AgentVectorEnv(WorldsVectorEnv):
         others: Policy | None = None,
         render_mode: str | None = None,
         threads: int = 0,
+        record: Path | str | None = None,
+        frames: int = 0,
         overrides: Iterable[str] = (),
     ) -> None:
         worlds = make(
-            config, num_envs, seed, species, actions, repeat, max_steps, render_mode, threads, overrides=overrides
+            config,
+            num_envs,
+            seed,
+            species,
+            actions,
+            repeat,
+            max_steps,
+            render_mode,
+            threads,
+            record=record,
+            frames=frames,
+            overrides=overrides,
         )
         self.group = one_group(worlds)
         super().__init__(worlds, num_envs)

@@ -45,7 +45,8 @@ def make(
         threads: As in `hedon.Simulation`; changes no result.
         backend: As in `hedon.Simulation`.
         record: Folder for what `hedon run` would write, which reports, analyses and the page then read; None for none.
-            Recorded worlds cannot be begun again. Call `close` at the end, or use `with`.
+            Worlds that begin again are a new run, in a folder with a number after its name. Call `close` at the end, or
+            use `with`.
         frames: Steps of the worlds between two frames of the records, for the page; 0 for none.
         world: What `VectorEnv.save` gave of one world with the same config, driven in the same way. All worlds begin as
             it was, and do so again at each reset; from there each goes its own way by its seed.

@@ -44,6 +44,8 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         slots: Whether slots are the agents.
         render_mode: What `render` gives.
         threads: One world of usual size is fastest on one.
+        record: Folder for the records of its worlds, one run for each that begins; call `close` at the end.
+        frames: Steps of the world between two frames of the records; 0 for none.
         overrides: Settings that differ from those of the preset or file.
 
     Raises:
@@ -62,11 +64,24 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         slots: bool = False,
         render_mode: str | None = None,
         threads: int = 1,
+        record: Path | str | None = None,
+        frames: int = 0,
         overrides: Iterable[str] = (),
     ) -> None:
         self.metadata = {"name": "hedon_v1", "render_modes": list(RENDER_MODES), "is_parallelizable": True}
         self._vector: VectorEnv = make(
-            config, 1, seed, species, actions, repeat, max_steps, render_mode, threads, overrides=overrides
+            config,
+            1,
+            seed,
+            species,
+            actions,
+            repeat,
+            max_steps,
+            render_mode,
+            threads,
+            record=record,
+            frames=frames,
+            overrides=overrides,
         )
         self.render_mode = render_mode
         self.agents: list[str] = []
@@ -160,7 +175,7 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         return self._vector.render()
 
     def close(self) -> None:
-        """Has nothing to close."""
+        """Ends the records and closes the window, if there are any."""
         self._vector.close()
 
     def __getstate__(self) -> dict[str, Any]:

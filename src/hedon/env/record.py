@@ -1,20 +1,26 @@
 """Records of worlds that a program drives: the folder that `hedon run` writes, for all that reads runs."""
 
 import time
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.dump import dump_toml
 from hedon.error import ArgumentError, EngineError
 from hedon.experiment.argument import MAX_STEPS, different, folder, integer, seed_list
+from hedon.experiment.plan import free_folder
 from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
-from hedon.experiment.session import first_manifest, last_manifest
+from hedon.experiment.session import End, end_of, first_manifest, last_manifest
 from hedon.experiment.simulation import Simulation
+from hedon.experiment.world import World
+from hedon.record.folder import require_no_run
 from hedon.record.lock import FolderLock
-from hedon.record.manifest import Manifest
 from hedon.record.snapshot import save_snapshot
 from hedon.record.writer import Writer
 
@@ -36,8 +42,11 @@ class Drive:
     frames: int
 
 
-class Record:
-    """Writes the run folder of worlds at their beginning, while somebody else advances them.
+class Records:
+    """Records all worlds of a simulation, which somebody else advances and begins again.
+
+    Worlds that begin together are one run. Its first folder is the one that is asked for; each later one has a number
+    after its name. A run is written from its first step on, and ends when all of its worlds have begun again.
 
     Args:
         simulation: The worlds, at step 0, with a config that is pinned to its rules.
@@ -53,21 +62,11 @@ class Record:
         config = simulation.config
         if config.world.founders or config.world.networks:
             raise ArgumentError("record: the config names founders or networks, which driven worlds do not begin with")
-        seeds = different(seed_list(simulation.seeds))
+        different(seed_list(simulation.seeds))
         self.folder = folder("record", out)
-        drive = Drive(config, seeds, MAX_STEPS, integer("frames", frames, 0, MAX_STEPS))
-        for world in simulation.worlds:
-            world._recorded = True
-        self._simulation, self._frames, self._window = simulation, drive.frames, config.world.rollout_steps
-        self._manifest = first_manifest(drive, simulation)
-        self._held = ExitStack()
-        with self._held as held:
-            held.enter_context(FolderLock(self.folder))
-            self._writer = held.enter_context(Writer(self.folder, dump_toml(config), self._manifest))
-            self._recorder = Recorder(simulation, self._writer, drive.frames, Start())
-            self._recorder.checkpoint(0, 0.0)
-            self._held = held.pop_all()
-        self._step, self._next, self._seconds = 0, 1, 0.0
+        self._frames = integer("frames", frames, 0, MAX_STEPS)
+        self._simulation, self._closed = simulation, False
+        self._runs = [RunRecord(simulation, simulation.worlds, self.folder, self._frames)]
 
     def require_open(self) -> None:
         """Refuses a step after the end of the records.
@@ -75,7 +74,7 @@ class Record:
         Raises:
             ArgumentError: They are closed.
         """
-        if self._manifest.ended is not None:
+        if self._closed:
             raise ArgumentError(f"step: the records in {self.folder} are closed: go on with a clone, which has none")
 
     def advance(self) -> None:
@@ -83,58 +82,165 @@ class Record:
 
         Raises:
             EngineError: A world reports an error; its state is in the folder `fault`.
-            RecordError: The folder cannot be written.
+            RecordError: A folder cannot be written.
         """
+        self.begin()
         begun = time.perf_counter()
         try:
             self._simulation.engine.run(1)
         except EngineError as error:
-            self._manifest = replace(self._manifest, fault=str(error))
-            self._recorder.fault(self._seconds)
-            self.close("failed")
+            for run in self._runs:
+                run.fail(str(error))
+            self._closed = True
             raise
         except KeyboardInterrupt:  # raised when the step was done
-            self._note(begun)
+            self.note(time.perf_counter() - begun)
             raise
-        self._note(begun)
+        self.note(time.perf_counter() - begun)
 
-    def _note(self, begun: float) -> None:
+    def begin(self) -> None:
+        """Begins the folders of worlds that are about to do their first step."""
+        for run in self._runs:
+            run.begin()
+
+    def note(self, seconds: float) -> None:
+        """Writes what is to be written after a step, which took some time [s]."""
+        for run in self._runs:
+            run.note(seconds)
+
+    def end(self, worlds: NDArray[np.bool_], seeds: Sequence[int]) -> None:
+        """Ends the records of some worlds, which are about to begin again with these seeds.
+
+        Raises:
+            ArgumentError: A run cannot have these seeds: one is too large, or appears twice. Nothing is changed.
+        """
+        different(seed_list(seeds))
+        for run in self._runs:
+            run.leave([world for world in run.worlds if worlds[world.index]])
+        self._runs = [run for run in self._runs if run.worlds]
+
+    def begin_again(self, worlds: NDArray[np.bool_]) -> None:
+        """Prepares the records of worlds that have begun again."""
+        waiting = {world.index for run in self._runs for world in run.worlds}  # those without a step so far
+        begun = [world for world in self._simulation.worlds if worlds[world.index] and world.index not in waiting]
+        if begun:
+            self._runs.append(RunRecord(self._simulation, begun, free_folder(self.folder), self._frames))
+
+    def close(self) -> None:
+        """Writes all that is left; a second call changes nothing.
+
+        Raises:
+            RecordError: Something could not be written.
+        """
+        for run in self._runs:
+            run.close()
+        self._closed = True
+
+
+class RunRecord:
+    """Writes the run folder of worlds that begin together.
+
+    Args:
+        simulation: With the worlds.
+        worlds: Those of the run, at step 0.
+        out: The folder.
+        frames: Steps between two frames; 0 for none.
+
+    Raises:
+        RecordError: The folder holds a run already, is in use, or cannot be written.
+    """
+
+    def __init__(self, simulation: Simulation, worlds: Sequence[World], out: Path, frames: int) -> None:
+        self.worlds, self.folder = list(worlds), out
+        self._simulation, self._frames = simulation, frames
+        self._window = simulation.config.world.rollout_steps
+        self._ends: dict[int, End] = {}
+        for row, world in enumerate(self.worlds):
+            world._row = row
+        self._recorder: Recorder | None = None
+        self._step, self._next, self._seconds = 0, 1, 0.0
+        with ExitStack() as held:
+            held.enter_context(FolderLock(out))
+            require_no_run(out)
+            self._held = held.pop_all()
+
+    def begin(self) -> None:
+        """Writes the beginning of the run, before the first step of its worlds."""
+        if self._recorder is not None or not self.worlds:
+            return
+        simulation, every = self._simulation, list(self.worlds)
+        drive = Drive(simulation.config, tuple(world.seed for world in every), MAX_STEPS, self._frames)
+        self._manifest = first_manifest(drive, simulation, worlds=every)
+        writer = Writer(self.folder, dump_toml(simulation.config), self._manifest)
+        self._writer = self._held.enter_context(writer)
+        self._recorder = Recorder(simulation, writer, self._frames, Start(), worlds=every)
+        self._recorder.checkpoint(0, 0.0)
+
+    def note(self, seconds: float) -> None:
+        """Writes what is to be written after a step."""
+        recorder = self._recorder
+        if recorder is None:
+            return
         self._step += 1
-        self._seconds += time.perf_counter() - begun
+        self._seconds += seconds
         ends = self._step % self._window == 0
         shown = bool(self._frames) and self._step % self._frames == 0
         if not (ends or shown or self._step >= self._next):
             return
         self._writer.require_folder()
         # The engine keeps deaths until they are read: look again before they can fill an eighth of its room.
-        full = 8 * max(world.waiting_deaths for world in self._simulation.worlds)
-        self._recorder.deaths()
+        full = 8 * max(world.waiting_deaths for world in self.worlds)
+        recorder.deaths()
         self._next = self._step + max(1, int(min(self._window, 1 / full if full else self._window)))
         if ends:
-            self._recorder.interval()
+            recorder.interval()
         if shown:
-            self._recorder.frame()
-        if self._recorder.checkpoint_due:
-            self._recorder.checkpoint(self._step, self._seconds)
+            recorder.frame()
+        if recorder.checkpoint_due and not self._ends:  # a checkpoint has all worlds of a run
+            recorder.checkpoint(self._step, self._seconds)
 
-    def close(self, status: str = "finished") -> Manifest:
+    def leave(self, worlds: Sequence[World]) -> None:
+        """Ends the records of some of its worlds, and the run with the last of them; without a step, nothing."""
+        if self._recorder is None or not worlds:
+            return
+        if len(worlds) == len(self.worlds):
+            self.close()
+        for world in self._recorder.worlds[:] if len(worlds) < len(self.worlds) else ():
+            if world in worlds:
+                self._forget(world)
+                self._recorder.leave(world)
+        self.worlds = [world for world in self.worlds if world not in worlds]
+
+    def fail(self, fault: str) -> None:
+        """Ends the run at an error of a world."""
+        if self._recorder is not None:
+            self._manifest = replace(self._manifest, fault=fault)
+            self._recorder.fault(self._seconds)
+            self.close("failed")
+
+    def close(self, status: str = "finished") -> None:
         """Writes all that is left and the end of the manifest; a second call changes nothing.
-
-        Returns:
-            The manifest as it was saved.
 
         Raises:
             RecordError: Something could not be written.
         """
-        if self._manifest.ended is not None:
-            return self._manifest
+        recorder = self._recorder
         with self._held:
+            if recorder is None or self._manifest.ended is not None:
+                return
             if status != "failed":
-                self._recorder.deaths()
-                self._recorder.checkpoint(self._step, self._seconds)
-                self._recorder.interval()
-            self._recorder.living()
+                recorder.deaths()
+                if not self._ends:
+                    recorder.checkpoint(self._step, self._seconds)
+                recorder.interval()
+            recorder.living()
+            picture = snapshot(recorder.worlds[0])
+            for world in recorder.worlds:
+                self._forget(world, failed=status == "failed")
             whole = replace(self._manifest, steps_asked=max(self._step, 1))
-            self._manifest = last_manifest(whole, self._simulation, status, self._seconds, self._writer)
-        save_snapshot(self.folder, snapshot(self._simulation.worlds[0]))
-        return self._manifest
+            ends = [self._ends[row] for row in sorted(self._ends)]
+            self._manifest = last_manifest(whole, ends, status, self._seconds, self._writer)
+        save_snapshot(self.folder, picture)
+
+    def _forget(self, world: World, *, failed: bool = False) -> None:
+        self._ends[world.row] = end_of(world, failed=failed)

@@ -20,13 +20,12 @@ from hedon.env.group import FORMS, Form, Group, act
 from hedon.env.keep import arrays_in, text_of
 from hedon.env.space import Spaces
 from hedon.error import ArgumentError
-from hedon.experiment.argument import MAX_STEPS, MAX_WORLDS, integer
+from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS, integer
 from hedon.experiment.rule import pinned, rules
-from hedon.experiment.simulation import MAX_WORLD_SEED, Simulation
+from hedon.experiment.simulation import Simulation
 from hedon.text import brief
 
 RENDER_MODES = ("rgb_array", "human")
-RECORDED = "worlds that are recorded only go on: make others, with another folder or without records"
 
 
 class VectorEnv(Cloned):
@@ -107,9 +106,9 @@ class VectorEnv(Cloned):
         self._made(simulation, names, form)
         self._open(np.ones(len(seeds), np.bool_))
         if record is not None:
-            from hedon.env.record import Record  # loads what writes tables
+            from hedon.env.record import Records  # loads what writes tables
 
-            self._record = Record(simulation, record, frames)
+            self._record = Records(simulation, record, frames)
 
     def _made(self, simulation: Simulation, names: Sequence[str], form: Form) -> None:
         self.simulation, self.config = simulation, simulation.config
@@ -197,22 +196,24 @@ class VectorEnv(Cloned):
             ArgumentError: A seed or an option is wrong.
             EngineError: There is no room for the initial agents or foods of a world.
         """
-        count = len(self.simulation.worlds)
-        mask = reset_mask(options, count)
-        if self._record is not None and not (self._fresh and seed is None and mask.all()):
-            raise ArgumentError(f"reset: {RECORDED}")
+        mask = reset_mask(options, len(self.simulation.worlds))
         if seed is not None:
-            seeds = world_seeds(seed, count)
+            seeds = world_seeds(seed, len(mask))
             self._seeded_by(seeds)
         elif self._fresh and mask.all():
             seeds = self.simulation.seeds
         else:
             drawn = iter(self._draw_seeds(int(mask.sum())))
             seeds = tuple(next(drawn) if begins else 0 for begins in mask)
+        records = None if self._fresh and seed is None and mask.all() else self._record
+        if records is not None:
+            records.end(mask, [seeds[i] for i in np.flatnonzero(mask)])
         for i in np.flatnonzero(mask).tolist():
             self.simulation.engine.reset(i, seeds[i])
             if self._start is not None:
                 self.simulation.engine.restore(i, self._start)
+        if records is not None:
+            records.begin_again(mask)
         self._open(mask)
         self._fresh = False
         if self.render_mode == "human":
@@ -226,7 +227,7 @@ class VectorEnv(Cloned):
     def _draw_seeds(self, count: int) -> list[int]:
         state, *drawn = np.random.SeedSequence(self._next_seed).generate_state(1 + count, np.uint64).tolist()
         self._next_seed = state
-        return [seed % (MAX_WORLD_SEED + 1) for seed in drawn]
+        return [seed % (MAX_SEED + 1) for seed in drawn]  # those that records can have
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """Advances every world by `repeat` steps with these actions.
@@ -324,7 +325,7 @@ class VectorEnv(Cloned):
                 is.
         """
         if self._record is not None:
-            raise ArgumentError(f"restore: {RECORDED}")
+            raise ArgumentError("restore: worlds that are recorded only go on or begin again: make others for it")
         found = arrays_in(self.simulation._unpack(saved), self._about(), self._arrays())
         self.simulation._restore(saved)
         for name, group in self.groups.items():
@@ -376,8 +377,8 @@ class VectorEnv(Cloned):
     def _told(self) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """What every step returns: arrays that stay."""
         info = {name: self._of(name) for name in ("alive", "born", "births", "deaths", "meals")}
-        told = (self._of(name) for name in ("observations", "rewards", "terminated", "truncated"))
-        return (*told, {"agent_id": self._of("ids"), **info})  # type: ignore[return-value]
+        told = tuple(self._of(name) for name in ("observations", "rewards", "terminated", "truncated"))
+        return *told, {"agent_id": self._of("ids"), **info}  # type: ignore[return-value]
 
     def _of(self, name: str) -> Any:
         """An array of the only driven species, or of each by its name."""

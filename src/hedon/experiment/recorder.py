@@ -1,6 +1,7 @@
 """Copies data from the engine into the records: deaths, intervals, frames, the living, checkpoints."""
 
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -11,8 +12,9 @@ import numpy as np
 from hedon.config.dump import dump_toml
 from hedon.error import EngineError
 from hedon.experiment.plan import Moment
-from hedon.experiment.sample import PopulationSampler, agent_rows, frame_rows
+from hedon.experiment.sample import PopulationSampler, Rows, agent_rows, frame_rows
 from hedon.experiment.simulation import Simulation
+from hedon.experiment.world import World
 from hedon.record.array_file import ArrayWriter
 from hedon.record.checkpoint import CheckpointHead, Sampled
 from hedon.record.folder import CHECKPOINT_SECONDS, checkpoint_path
@@ -52,6 +54,7 @@ class Recorder:
         frames: Steps between two frames; stored in checkpoints.
         start: Where the session begins.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
+        worlds: That are recorded; None for all.
     """
 
     def __init__(
@@ -61,11 +64,14 @@ class Recorder:
         frames: int,
         start: Start,
         checkpoint_seconds: float = CHECKPOINT_SECONDS,
+        worlds: Sequence[World] | None = None,
     ) -> None:
         self.simulation = simulation
+        self.worlds = list(simulation.worlds if worlds is None else worlds)
+        self.left: list[Rows] = []  # the living of worlds that have left, as they were then
         self.writer = writer
         self.frames = frames
-        sampled = [(world, species) for world in simulation.worlds for species in range(len(world.config.species))]
+        sampled = [(world, species) for world in self.worlds for species in range(len(world.config.species))]
         since = start.sampled or (None,) * len(sampled)
         self.samplers = [PopulationSampler(*which, at) for which, at in zip(sampled, since, strict=True)]
         self.rows = [sampler.row() for sampler in self.samplers]
@@ -84,13 +90,13 @@ class Recorder:
         Raises:
             EngineError: It was called too seldom, and `partial` is false: some are lost.
         """
-        for world in self.simulation.worlds:
+        for world in self.worlds:
             lives = world._take_deaths(partial=partial)
             if len(lives["agent_id"]):
                 self.writer.append("agents", agent_rows(world, lives))
             for species in np.unique(lives["species"]).tolist():
                 last = int(lives["death_step"][lives["species"] == species].max())
-                self.last_deaths[world.index, species] = last
+                self.last_deaths[world.row, species] = last
         if time.perf_counter() >= self.flush_due:
             self.living()
 
@@ -111,15 +117,24 @@ class Recorder:
         """Writes all rows so far and the living, so that readers see this moment. All deaths must be written before."""
         now = time.perf_counter()
         self.flush_due = now + max(FLUSH_SECONDS, FLUSH_GROWTH * (now - self.begun))
-        rows = []
-        for world in self.simulation.worlds:
+        rows = [*self.left]
+        for world in self.worlds:
             with suppress(EngineError):  # a world that stopped since its slots are inconsistent
                 rows.append(agent_rows(world, world.agents()))
         self.writer.replace_living(*rows)
 
+    def leave(self, world: World) -> None:
+        """Ends the records of one world, while others go on."""
+        self.deaths()
+        self.interval()
+        self.left.append(agent_rows(world, world.agents()))
+        kept = [i for i, sampler in enumerate(self.samplers) if sampler.world is not world]
+        self.samplers, self.rows = [self.samplers[i] for i in kept], [self.rows[i] for i in kept]
+        self.worlds.remove(world)
+
     def frame(self) -> None:
         """Writes every agent and food of every world that is not extinct, as they are now."""
-        rows = [each for world in self.simulation.worlds if not world.extinct for each in frame_rows(world)]
+        rows = [each for world in self.worlds if not world.extinct for each in frame_rows(world)]
         if rows:
             self.writer.append("frames", *rows)
 
@@ -152,19 +167,19 @@ class Recorder:
     def fault(self, seconds: float) -> None:
         """Saves the worlds when one of them has stopped at a fault, and the agents that died before it."""
         self.deaths(partial=True)
-        step = max(world.step for world in self.simulation.worlds)
+        step = max(world.step for world in self.worlds)
         self.writer.save_fault(self._head(step, seconds), self._fill)
 
     def _head(self, step: int, seconds: float) -> CheckpointHead:
         simulation = self.simulation
-        digests = [""] * len(simulation.worlds)
-        for i, world in enumerate(simulation.worlds):
+        digests = [""] * len(self.worlds)
+        for i, world in enumerate(self.worlds):
             with suppress(EngineError):  # a world that stopped since its slots are inconsistent
                 digests[i] = world.digest()
         return CheckpointHead(
             step=step,
             config=dump_toml(simulation.config),
-            seeds=simulation.seeds,
+            seeds=tuple(world.seed for world in self.worlds),
             backend=simulation.engine.backend,
             hedon_version=version("hedon"),
             frames=self.frames,
@@ -175,9 +190,9 @@ class Recorder:
 
     def _fill(self, out: ArrayWriter) -> None:
         """Writes the arrays of all worlds, which the engine gives in pieces."""
-        for i in range(len(self.simulation.worlds)):
+        for world in self.worlds:
             with suppress(EngineError):  # as above
-                self.simulation.engine.save_to(i, partial(_begin, out, i), out.piece)
+                self.simulation.engine.save_to(world.index, partial(_begin, out, world.row), out.piece)
 
     def moment(self, step: int, steps: int, seconds: float) -> Moment:
         """What a display shows.
@@ -196,7 +211,7 @@ class Recorder:
         if not sampler.columns.several:
             return world.extinct_step
         lives = bool((world.view("species")[world.living] == species).any())
-        return None if lives else self.last_deaths.get((world.index, species))
+        return None if lives else self.last_deaths.get((world.row, species))
 
 
 def _begin(out: ArrayWriter, world: int, name: str, dtype: str, shape: list[int]) -> None:

@@ -12,7 +12,7 @@ from hedon.experiment.memory import require_memory
 from hedon.experiment.plan import Callback, RunPlan, together
 from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
-from hedon.experiment.session import first_manifest, last_manifest
+from hedon.experiment.session import end_of, first_manifest, last_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.record.error import RecordError
 from hedon.record.founder import FOUNDERS
@@ -154,7 +154,8 @@ def advance(
     finally:
         with suppress(RecordError) if status == "failed" else nullcontext():  # the first error is already being raised
             recorder.living()
-            manifest = last_manifest(manifest, simulation, status, seconds, writer)
+            ends = [end_of(world, failed=status == "failed") for world in simulation.worlds]
+            manifest = last_manifest(manifest, ends, status, seconds, writer)
     save_snapshot(plan.out, snapshot(simulation.worlds[0]))
     return manifest
 

@@ -29,7 +29,7 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     direct = ("agent_id", "parent_id", "generation", "birth_step", "death_step", "birth_energy", "energy")
     direct += ("energy_gained", "energy_spent", "children", "distance", *(("mate_id",) if columns.mating else ()))
     rows = {
-        "world": world.index,
+        "world": world.row,
         "seed": world.seed,
         **{name: lives[name] for name in direct},
         **_held_rows(world, lives),
@@ -95,7 +95,7 @@ class PopulationSampler:
         now = self._now()
         present = world.view("food_stock.present")
         row: Rows = {
-            "world": world.index,
+            "world": world.row,
             "seed": world.seed,
             "step": world.step,
             "steps": world.step - since.step,
@@ -139,7 +139,7 @@ class PopulationSampler:
 def frame_rows(world: World) -> list[Rows]:
     """Rows of the table `frames`: every agent and every food of a world as it is now."""
     lives, foods = world.agents(), world.foods()
-    here = {"world": world.index, "step": world.step}
+    here = {"world": world.row, "step": world.step}
     placed = {column: lives[column] for column in ("x", "y", "angle", "energy")}
     rows = []
     for species, name in enumerate(world.config.species):
@@ -157,7 +157,7 @@ def snapshot(world: World) -> Snapshot:
     lives, foods, config = world.agents(), world.foods(), world.config
     kinds = list(config.species.values())
     return Snapshot(
-        world=world.index,
+        world=world.row,
         seed=world.seed,
         step=world.step,
         **{name: lives[name] for name in ("agent_id", "x", "y", "angle", "energy", "species")},

@@ -1,7 +1,7 @@
 """The manifest that a session of a run writes at its beginning and at its end."""
 
-from collections.abc import Iterator
-from dataclasses import asdict, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Protocol
 
 from hedon.config.config import Config
@@ -11,6 +11,7 @@ from hedon.config.load import is_modified
 from hedon.config.schema.evolution import GATED
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.simulation import Simulation
+from hedon.experiment.world import World
 from hedon.record.digest import records_digest
 from hedon.record.manifest import ChannelNote, Manifest, Session
 from hedon.record.provenance import collect_provenance, utc_now
@@ -42,15 +43,16 @@ class Planned(Protocol):
         ...
 
 
-def first_manifest(plan: Planned, simulation: Simulation, from_step: int = 0) -> Manifest:
+def first_manifest(plan: Planned, simulation: Simulation, from_step: int = 0, worlds: Sequence[World] = ()) -> Manifest:
     """The manifest of a run that begins now, at step 0 or, for a branch, at a later one.
 
     Args:
         plan: What is run.
         simulation: Made from the plan.
         from_step: Where it begins [step].
+        worlds: That are recorded; all if none is given.
     """
-    config = plan.config
+    config, worlds = plan.config, worlds or simulation.worlds
     manifest = Manifest(
         **asdict(columns_of(config)),
         seeds=plan.seeds,
@@ -63,12 +65,12 @@ def first_manifest(plan: Planned, simulation: Simulation, from_step: int = 0) ->
         schema=SCHEMA,
         backend=simulation.engine.backend,
         threads=simulation.engine.threads,
-        steps_done=tuple(world.step for world in simulation.worlds),
+        steps_done=tuple(world.step for world in worlds),
         extinct_steps=tuple(None for _ in plan.seeds),
         food_colors=tuple(food.color for food in config.food.values()),
         frames=plan.frames,
         channels=tuple(channel_notes(config)),
-        obstacle_places=_places(simulation) if config.obstacle.count else (),
+        obstacle_places=_places(worlds) if config.obstacle.count else (),
         rules=tuple(rule.source for rule in simulation.rules),
         **collect_provenance(),
     )
@@ -88,11 +90,11 @@ def channel_notes(config: Config) -> Iterator[ChannelNote]:
             yield ChannelNote(species, "gate", layout.gate.name, "", 1.0, layout.gate.unit, layout.gate.meaning)
 
 
-def _places(simulation: Simulation) -> tuple[tuple[tuple[tuple[float, float], ...], ...], ...]:
+def _places(worlds: Sequence[World]) -> tuple[tuple[tuple[tuple[float, float], ...], ...], ...]:
     """The corners of the obstacles of each world, to the thousandth of a unit: for pictures."""
     return tuple(
         tuple(tuple((round(x, 3), round(y, 3)) for x, y in corners) for corners in world.obstacles.tolist())
-        for world in simulation.worlds
+        for world in worlds
     )
 
 
@@ -123,12 +125,32 @@ def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, fro
     )
 
 
-def last_manifest(manifest: Manifest, simulation: Simulation, status: str, seconds: float, writer: Writer) -> Manifest:
+@dataclass(frozen=True, slots=True)
+class End:
+    """Where a world stopped, for the manifest.
+
+    Attributes:
+        step: Steps completed [step].
+        extinct_step: At which nobody was left; None if somebody lives [step].
+        digest: Of its state; empty after a fault.
+    """
+
+    step: int
+    extinct_step: int | None
+    digest: str
+
+
+def end_of(world: World, *, failed: bool = False) -> End:
+    """How a world is now."""
+    return End(world.step, world.extinct_step, "" if failed else world.digest())
+
+
+def last_manifest(manifest: Manifest, ends: Sequence[End], status: str, seconds: float, writer: Writer) -> Manifest:
     """Saves and returns the manifest of a session that ends now. Unless it failed, first writes all rows to disk.
 
     Args:
         manifest: As the session has it.
-        simulation: Where it stopped.
+        ends: Of its worlds.
         status: "finished", "interrupted" or "failed".
         seconds: Spent on steps, over all sessions [s].
         writer: Open on the run's folder.
@@ -141,14 +163,14 @@ def last_manifest(manifest: Manifest, simulation: Simulation, status: str, secon
     records = None
     if status != "failed":
         writer.flush()
-        digests = tuple(world.digest() for world in simulation.worlds)
+        digests = tuple(end.digest for end in ends)
         records = records_digest(writer.folder, manifest.columns)
     manifest = replace(
         manifest,
         status=status,
         ended=now,
-        steps_done=tuple(world.step for world in simulation.worlds),
-        extinct_steps=tuple(world.extinct_step for world in simulation.worlds),
+        steps_done=tuple(end.step for end in ends),
+        extinct_steps=tuple(end.extinct_step for end in ends),
         run_seconds=seconds,
         world_digests=digests,
         records_digest=records,

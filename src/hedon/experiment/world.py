@@ -29,7 +29,7 @@ class World:
         self._engine = engine
         self.index = index
         self.config = config
-        self._recorded = False
+        self._row: int | None = None
 
     def __repr__(self) -> str:
         return f"<World of seed {self.seed} at step {self.step:,}, {self.alive:,} alive>"
@@ -46,6 +46,11 @@ class World:
     def columns(self) -> Columns:
         """What the columns of its records follow from."""
         return columns_of(self.config)
+
+    @property
+    def row(self) -> int:
+        """Its number among the worlds of its run: its index, unless a program drives it and records it with others."""
+        return self.index if self._row is None else self._row
 
     @property
     def seed(self) -> int:
@@ -167,7 +172,7 @@ class World:
             EngineError: Some are lost, and `partial` is false. Nothing is taken then.
             ArgumentError: The world is recorded (`hedon.make(record=…)`): its records take them.
         """
-        if self._recorded:
+        if self._row is not None:
             raise ArgumentError("deaths: the world is recorded, and its records take them: read them there, at the end")
         return self._take_deaths(partial=partial)
 
