@@ -16,7 +16,7 @@ from hedon.experiment.argument import MAX_STEPS, different, folder, integer, see
 from hedon.experiment.plan import free_folder
 from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
-from hedon.experiment.session import End, end_of, first_manifest, last_manifest
+from hedon.experiment.session import WorldEnd, end_of, first_manifest, last_manifest
 from hedon.experiment.simulation import Simulation
 from hedon.experiment.world import World
 from hedon.record.folder import require_no_run
@@ -154,7 +154,7 @@ class RunRecord:
         self.worlds, self.folder = list(worlds), out
         self._simulation, self._frames = simulation, frames
         self._window = simulation.config.world.rollout_steps
-        self._ends: dict[int, End] = {}
+        self._ends: dict[int, WorldEnd] = {}
         for row, world in enumerate(self.worlds):
             world._row = row
         self._recorder: Recorder | None = None

@@ -126,7 +126,7 @@ def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, fro
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class WorldEnd:
     """Where a world stopped, for the manifest.
 
     Attributes:
@@ -140,12 +140,14 @@ class End:
     digest: str
 
 
-def end_of(world: World, *, failed: bool = False) -> End:
+def end_of(world: World, *, failed: bool = False) -> WorldEnd:
     """How a world is now."""
-    return End(world.step, world.extinct_step, "" if failed else world.digest())
+    return WorldEnd(world.step, world.extinct_step, "" if failed else world.digest())
 
 
-def last_manifest(manifest: Manifest, ends: Sequence[End], status: str, seconds: float, writer: Writer) -> Manifest:
+def last_manifest(
+    manifest: Manifest, ends: Sequence[WorldEnd], status: str, seconds: float, writer: Writer
+) -> Manifest:
     """Saves and returns the manifest of a session that ends now. Unless it failed, first writes all rows to disk.
 
     Args:
