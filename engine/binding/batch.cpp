@@ -1,20 +1,22 @@
 #include "binding/batch.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "binding/error.h"
 #include "binding/python_simulation.h"
 
 namespace hedon {
 namespace {
 
-/// Begins a world again, by the seed in its row.
-void begin_world(Simulation& simulation, const BatchIn& in, int row) {
-  const uint64_t seed = uint64_t{in.key[2 * row]} << 32 | in.key[2 * row + 1];
-  simulation.reset(row, seed);
+/// The seed in the row of a world; the upper bit is left out, which the records of a run cannot have.
+uint64_t seed_in(const BatchIn& in, int64_t row) {
+  return uint64_t{in.key[2 * row] & 0x7fffffffu} << 32 | in.key[2 * row + 1];
 }
 
 std::string number(const char* name, int64_t world, int64_t slot, int64_t motor, double value) {
@@ -25,8 +27,8 @@ std::string number(const char* name, int64_t world, int64_t slot, int64_t motor,
 }
 
 /// One agent-step after the other, with the rewards of those who were there at the beginning.
-void advance_worlds(Simulation& simulation, const BatchCall& call, const BatchIn& in, const BatchOut& out,
-                    size_t agents) {
+void advance_worlds(PythonSimulation& held, Simulation& simulation, const BatchCall& call, const BatchIn& in,
+                    const BatchOut& out, size_t agents) {
   const int32_t species = static_cast<int32_t>(call.species);
   std::vector<float> paid(agents);
   std::vector<int32_t> acting(agents);
@@ -34,7 +36,9 @@ void advance_worlds(Simulation& simulation, const BatchCall& call, const BatchIn
   memset(out.rewards, 0, agents * sizeof(float));
   for (int64_t i = 0; i < call.repeat; ++i) {
     memcpy(acting.data(), out.ids, agents * sizeof(int32_t));
+    held.tell(call, Watched::BEFORE_STEP);
     simulation.run(1);
+    held.tell(call, Watched::AFTER_STEP);
     simulation.read_rewards(species, {nullptr, paid.data(), out.ids});
     for (size_t a = 0; a < agents; ++a) out.rewards[a] += acting[a] == in.ids[a] ? paid[a] : 0.0f;
   }
@@ -47,6 +51,7 @@ std::string PythonSimulation::step_batch(const BatchCall& call, const BatchIn& i
   Simulation& simulation = *simulation_;
   const int64_t worlds = simulation.world_count();
   if (simulation.pool().forked()) return "this process was forked from the one that made the worlds";
+  if (call.begins != 0 && rows == 1 && worlds > 1) return begin_alike(call, in, out);
   if (rows != worlds)
     return "called for " + std::to_string(rows) + " worlds, and there are " + std::to_string(worlds) +
            ": use jax.vmap over all of them at once";
@@ -56,7 +61,8 @@ std::string PythonSimulation::step_batch(const BatchCall& call, const BatchIn& i
   if (call.slots != own.capacity() || call.entries != static_cast<int64_t>(entries))
     return "compiled for other worlds: trace the program again";
   for (int64_t i = 0; i < rows && call.begins == 0; ++i) {
-    if (in.world[i] != i) return "the states are not in the order of the worlds";
+    if (in.world[i] != i && !(alike_ == turn_ && in.world[i] == 0))
+      return "the states are not in the order of the worlds";
     if (in.turn[i] != turn_)
       return "stale state: a later step or reset has used its worlds, or they are those of another environment; go on "
              "with the state that was returned last";
@@ -79,27 +85,73 @@ std::string PythonSimulation::step_batch(const BatchCall& call, const BatchIn& i
       const int64_t wide = static_cast<int64_t>(slots) * ACTIONS;
       return number("action", bad / wide, bad % wide / ACTIONS, bad % ACTIONS, static_cast<double>(in.actions[bad]));
     }
-    advance_worlds(simulation, call, in, out, agents);
+    advance_worlds(*this, simulation, call, in, out, agents);
     raise_faults();
   }
   ++turn_;
+  std::vector<uint64_t> seeds(static_cast<size_t>(rows));
+  const std::unique_ptr<bool[]> begins(new bool[static_cast<size_t>(rows)]);
+  bool any = false;
   for (int64_t i = 0; i < rows; ++i) {
-    int32_t* const ids = out.ids + i * static_cast<int64_t>(slots);
-    bool left = false;
-    for (size_t s = 0; s < slots; ++s) left |= ids[s] >= 0;
-    const bool late = call.max_steps > 0 && simulation.numbers(static_cast<int>(i)).head().step >= call.max_steps;
+    const int32_t* const ids = out.ids + i * static_cast<int64_t>(slots);
+    const bool left = call.begins == 0 && std::any_of(ids, ids + slots, [](int32_t id) { return id >= 0; });
+    const int64_t step = simulation.numbers(static_cast<int>(i)).head().step;
+    const bool late = in.max_steps[i] > 0 && step >= in.max_steps[i];
     out.done[i] = call.begins == 0 && (late || !left);
-    if (call.begins != 0 || out.done[i]) {
-      begin_world(simulation, in, static_cast<int>(i));
-      for (size_t s = 0; s < slots; ++s) ids[s] = -1;
-    }
+    begins[static_cast<size_t>(i)] = call.begins != 0 || out.done[i];
+    any |= begins[static_cast<size_t>(i)];
+    seeds[static_cast<size_t>(i)] = seed_in(in, i);
     out.world[i] = static_cast<int32_t>(i);
     out.turn[i] = turn_;
+  }
+  if (any) tell(call, Watched::BEGIN, begins.get(), seeds.data());
+  for (int64_t i = 0; i < rows; ++i) {
+    if (!begins[static_cast<size_t>(i)]) continue;
+    simulation.reset(static_cast<int>(i), seeds[static_cast<size_t>(i)]);
+    std::fill_n(out.ids + i * static_cast<int64_t>(slots), slots, -1);
   }
   raise_faults();
   std::vector<float> paid(agents);
   simulation.read_observations(static_cast<int32_t>(call.species), {out.observations, paid.data(), out.ids});
   return "";
+}
+
+/// One row for all worlds: they begin by one seed. Steps may then have a row for each of them that is of world 0, as of
+/// many networks that a program maps over a single world.
+std::string PythonSimulation::begin_alike(const BatchCall& call, const BatchIn& in, const BatchOut& out) {
+  const size_t worlds = static_cast<size_t>(simulation_->world_count());
+  const size_t slots = static_cast<size_t>(call.slots), numbers = slots * static_cast<size_t>(call.entries);
+  std::vector<uint32_t> key, turn(worlds);
+  for (size_t i = 0; i < worlds; ++i) key.insert(key.end(), in.key, in.key + 2);
+  const std::vector<int32_t> max_steps(worlds, in.max_steps[0]);
+  std::vector<int32_t> world(worlds), ids(worlds * slots);
+  std::vector<float> observations(worlds * numbers), rewards(worlds * slots);
+  const std::unique_ptr<bool[]> terminated(new bool[worlds * slots]), done(new bool[worlds]);
+  const BatchIn every{nullptr, nullptr, key.data(), nullptr, nullptr, max_steps.data()};
+  const BatchOut told{world.data(),   turn.data(),      ids.data(), observations.data(),
+                      rewards.data(), terminated.get(), done.get()};
+  std::string said = step_batch(call, every, told, static_cast<int64_t>(worlds));
+  if (!said.empty()) return said;
+  alike_ = turn_;
+  out.world[0] = 0;
+  out.turn[0] = turn_;
+  std::copy_n(ids.begin(), slots, out.ids);
+  std::copy_n(observations.begin(), numbers, out.observations);
+  std::fill_n(out.rewards, slots, 0.0f);
+  std::fill_n(out.terminated, slots, false);
+  out.done[0] = false;
+  return said;
+}
+
+void PythonSimulation::tell(const BatchCall& call, Watched watched, const bool* begins, const uint64_t* seeds) {
+  if (call.watch == 0) return;
+  if (watched == Watched::AFTER_STEP && faulty() >= 0) watched = Watched::FAULT;
+  char complaint[600] = "";
+  running_.store(false);  // what is written is read from the simulation
+  const int32_t wrong = reinterpret_cast<Watch>(static_cast<uintptr_t>(call.watch))(
+      static_cast<int32_t>(watched), begins, seeds, complaint, sizeof complaint);
+  running_.store(true);
+  if (wrong != 0) throw EngineError(complaint);
 }
 
 void step_batch(const BatchCall* call, const BatchIn* in, const BatchOut* out, int64_t rows, char* complaint,

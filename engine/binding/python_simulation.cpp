@@ -251,13 +251,19 @@ static std::string shown(double value) {
 }
 
 /// The only place that turns a world's status into an exception. The earliest error counts, for any number of steps.
-void PythonSimulation::raise_faults() {
+int PythonSimulation::faulty() const {
   Simulation& simulation = *simulation_;
   int first = -1;
   for (int i = 0; i < simulation.world_count(); ++i) {
     const Fault& fault = simulation.numbers(i).fault();
     if (fault.status != Status::ok && (first < 0 || fault.step < simulation.numbers(first).fault().step)) first = i;
   }
+  return first;
+}
+
+void PythonSimulation::raise_faults() {
+  Simulation& simulation = *simulation_;
+  const int first = faulty();
   if (first < 0) return;
   const Fault& fault = simulation.numbers(first).fault();
   const StatusText& text = STATUS_TEXT[static_cast<int>(fault.status)];

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,10 @@ class PythonSimulation {
   /// See `hedon::step_batch`.
   std::string step_batch(const BatchCall& call, const BatchIn& in, const BatchOut& out, int64_t rows);
 
+  /// Calls the `Watch` of a call, if it has one; after a step that led to a fault, with that. EngineError: it
+  /// complains.
+  void tell(const BatchCall& call, Watched watched, const bool* begins = nullptr, const uint64_t* seeds = nullptr);
+
   static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
 
   /// EngineError: it runs in another thread, or this process was forked from the one that made it.
@@ -89,16 +94,19 @@ class PythonSimulation {
   void run(int64_t steps);
 
  private:
+  int faulty() const;  ///< the world with the first fault; -1 where there is none
   void raise_faults();
   std::string about_agents(const Fault& fault) const;
+  std::string begin_alike(const BatchCall& call, const BatchIn& in, const BatchOut& out);
   void need_working();
 
   std::unique_ptr<Simulation> simulation_;
   std::atomic<bool> running_{false};
   int64_t id_ = 0;
   std::vector<NamedRule> rules_;
-  uint32_t turn_;      ///< counts calls of `step_batch`, from a number of its own, so that no other's states are taken
-  int64_t piece_ = 1;  ///< steps between two checks for Ctrl-C
+  uint32_t turn_;  ///< counts calls of `step_batch`, from a number of its own, so that no other's states are taken
+  std::optional<uint32_t> alike_;  ///< the turn at which all worlds have begun by one seed
+  int64_t piece_ = 1;              ///< steps between two checks for Ctrl-C
 };
 
 /// A world config from a nested dict. EngineError: a number is out of bounds.

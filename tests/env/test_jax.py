@@ -1,5 +1,6 @@
 """Worlds inside programs of JAX, against a plain loop over the same worlds."""
 
+import copy
 import gc
 import subprocess
 import sys
@@ -11,7 +12,8 @@ import numpy as np
 import pytest
 from worlds import QUICK
 
-from hedon import ArgumentError, HedonError, env, load_config, make
+from hedon import ArgumentError, HedonError, env, load_config, make, open_run
+from hedon.check import check_run
 
 jax: Any = pytest.importorskip("jax", reason='needs the optional package: pip install "hedon[jax]"')
 
@@ -49,7 +51,7 @@ def rollout(worlds: Any, weights: Any, steps: int = STEPS) -> Any:
 
 def seeds_of(keys: Any) -> list[int]:
     data = np.asarray(jax.random.key_data(keys)).astype(np.uint64)
-    return [int(high) << 32 | int(low) for high, low in data]
+    return [(int(high) & 0x7FFFFFFF) << 32 | int(low) for high, low in data]
 
 
 @pytest.mark.parametrize(
@@ -148,6 +150,7 @@ def test_states_of_another_shape_or_type_are_refused(part, change):
 
 
 def test_no_traceback_follows_an_error_that_was_caught():
+    env.JaxEnv(CONFIG)  # compiles the call, which says so
     program = """
 import jax, numpy as np
 from hedon import env
@@ -175,8 +178,9 @@ def test_what_is_wrong_is_named_and_changes_nothing():
     before = [world.digest() for world in worlds.simulation.worlds]
     with pytest.raises(Exception, match=rf"hedon: action\[1, {slot}, 1\] = 1\.5: is not an action"):
         jax.block_until_ready(jax.vmap(worlds.step)(keys, state, wrong))
+    alone = jax.tree.map(lambda each: each[0], state)
     with pytest.raises(Exception, match=r"hedon: called for 1 worlds, and there are 2: use jax\.vmap"):
-        jax.block_until_ready(worlds.reset(keys[0]))
+        jax.block_until_ready(worlds.step(keys[0], alone, wrong[0] * 0))
     swapped = jax.tree.map(lambda each: each[::-1], state)
     with pytest.raises(Exception, match="hedon: the states are not in the order of the worlds"):
         jax.block_until_ready(jax.vmap(worlds.step)(keys, swapped, wrong * 0))
@@ -237,9 +241,107 @@ def test_spaces_are_of_what_functions_take_and_give(actions):
     worlds = env.JaxEnv("baseline", actions=actions, overrides=["population.capacity=7", "population.initial_count=3"])
     like = make(worlds.simulation.config, actions=actions)
     observations, _ = worlds.reset(jax.random.key(0))
-    assert worlds.observation_space.shape == observations.shape == (7, len(worlds.columns))
-    assert worlds.observation_space.dtype == observations.dtype
-    assert worlds.observation_space.contains(np.asarray(observations))
-    assert worlds.action_space.shape == (worlds.slots, 2)
-    assert (worlds.action_space.low == like.action_space.low[0]).all()
-    assert (worlds.action_space.high == like.action_space.high[0]).all()
+    assert worlds.observation_space().shape == observations.shape == (7, len(worlds.columns))
+    assert worlds.observation_space().dtype == observations.dtype
+    assert worlds.observation_space().contains(np.asarray(observations))
+    assert worlds.action_space().shape == (worlds.slots, 2)
+    assert (worlds.action_space().low == like.action_space.low[0]).all()
+    assert (worlds.action_space().high == like.action_space.high[0]).all()
+
+
+def test_a_population_under_one_key_lives_in_worlds_that_begin_alike():
+    worlds = env.JaxEnv(CONFIG, 3, threads=1)
+
+    def live(key: Any, weights: Any) -> Any:
+        begin, go_on = jax.random.split(key)
+
+        def advance(carry: Any, key: Any) -> Any:
+            seen, state = carry
+            seen, state, paid, *_ = worlds.step(key, state, act(weights, seen))
+            return (seen, state), (seen, paid)
+
+        return jax.lax.scan(advance, worlds.reset(begin), jax.random.split(go_on, STEPS))[1]
+
+    population = np.linspace(-0.5, 0.5, 6, dtype=np.float32).reshape(3, 2)
+    key = jax.random.key(5)
+    seen, paid = jax.jit(jax.vmap(live, in_axes=(None, 0)))(key, population)
+    (seed,) = seeds_of(jax.random.split(key)[:1])
+    for i, weights in enumerate(population):
+        plain = make(CONFIG, 1, seed, threads=1)
+        for step in range(STEPS):
+            plain.step(act(weights, plain.observations))
+            np.testing.assert_array_equal(seen[i, step], plain.observations[0])
+            np.testing.assert_array_equal(paid[i, step], plain.rewards[0])
+    assert not np.array_equal(seen[0], seen[1])
+
+
+def test_params_set_the_length_of_each_world():
+    worlds = env.JaxEnv(CONFIG, 3, threads=1)
+    params = env.JaxParams(jax.numpy.array([10, 20, 0]))
+    keys = jax.random.split(jax.random.key(0), 3)
+    _, state = jax.vmap(worlds.reset)(keys, params)
+    ends = []
+    for _ in range(40):
+        _, state, _, done, _ = jax.vmap(worlds.step)(keys, state, np.zeros((3, 12, 2), np.float32), params)
+        ends.append(np.asarray(done))
+    assert np.sum(ends, axis=0).tolist() == [4, 2, 0]
+    assert worlds.default_params == env.JaxParams(0)
+    with pytest.raises(ArgumentError, match=r"params\.max_steps: must be one whole number"):
+        worlds.reset(keys[0], env.JaxParams(jax.numpy.float32(3)))
+
+
+def test_a_log_tells_what_each_life_was_paid():
+    worlds = env.JaxEnv(CONFIG, 2, threads=1, max_steps=25)
+    log = env.JaxLog(worlds)
+    rng, keys = np.random.default_rng(0), jax.random.split(jax.random.key(1), 2)
+    _, state = jax.vmap(log.reset)(keys)
+    step = jax.jit(jax.vmap(log.step))
+    paid, lived, ids = np.zeros((2, 12)), np.zeros((2, 12), int), np.asarray(state.env_state.agent_id)
+    lives = 0
+    for i in range(60):
+        action = rng.uniform(-1, 1, (2, 12, 2)).astype(np.float32)
+        _, state, rewards, done, info = step(jax.random.split(jax.random.key(i), 2), state, action)
+        paid += np.asarray(rewards)
+        lived += ids >= 0
+        ended = (ids >= 0) & (np.asarray(info["terminated"]) | np.asarray(done)[:, None])
+        np.testing.assert_array_equal(info["returned_episode"], ended)
+        np.testing.assert_allclose(info["returned_episode_returns"], np.where(ended, paid, 0), rtol=1e-5, atol=1e-6)
+        np.testing.assert_array_equal(info["returned_episode_lengths"], np.where(ended, lived, 0))
+        paid[ended], lived[ended] = 0, 0
+        lives += ended.sum()
+        ids = np.asarray(state.env_state.agent_id)
+    assert lives > 20
+    assert log.slots == 12
+
+
+def test_records_of_a_program_are_runs_and_change_nothing(tmp_path):
+    def ends(**record: Any) -> list[str]:
+        with env.JaxEnv(CONFIG, 3, threads=1, repeat=2, max_steps=30, **record) as worlds:
+            rollout(worlds, np.full(2, 0.3, np.float32))
+            return [world.digest() for world in worlds.simulation.worlds]
+
+    assert ends(record=tmp_path / "run", frames=8) == ends()
+    runs = [open_run(each) for each in sorted(tmp_path.iterdir())]
+    assert len(runs) >= 3
+    for run in runs:
+        assert run.manifest.status == "finished"
+        assert check_run(run.path).findings == ()
+    assert sum(sum(run.manifest.steps_done) for run in runs) == 3 * 2 * STEPS
+    worlds = env.JaxEnv(CONFIG, 2, record=tmp_path / "alike")
+    with pytest.raises(Exception, match=r"hedon: seeds: .* appears twice"):
+        jax.block_until_ready(worlds.reset(jax.random.key(0)))
+    with pytest.raises(ArgumentError, match="frames = 5: give record"):
+        env.JaxEnv(CONFIG, frames=5)
+
+
+def test_a_program_goes_on_only_while_its_records_are_open(tmp_path):
+    worlds = env.JaxEnv(CONFIG, record=tmp_path / "run")
+    key, action = jax.random.key(0), jax.numpy.zeros((12, 2))
+    _, state = worlds.reset(key)
+    _, state, *_ = worlds.step(key, state, action)
+    copied = copy.copy(worlds)
+    worlds.close()
+    with pytest.raises(Exception, match=r"hedon: step: the records in .* are closed"):
+        jax.block_until_ready(worlds.step(key, state, action))
+    jax.block_until_ready(copied.step(key, state, action))
+    assert open_run(tmp_path / "run").manifest.steps_done == (1,)

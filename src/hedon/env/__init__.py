@@ -14,7 +14,8 @@ from hedon.env.vector import VectorEnv
 if TYPE_CHECKING:
     from hedon.env.agent import AgentEnv
     from hedon.env.agent_vector import AgentVectorEnv
-    from hedon.env.jax import JaxEnv
+    from hedon.env.jax import JaxEnv, JaxParams
+    from hedon.env.jax_log import JaxLog
     from hedon.env.parallel import ParallelEnv
     from hedon.env.slot import SlotVecEnv
     from hedon.env.slot_vector import SlotVectorEnv
@@ -24,6 +25,8 @@ __all__ = [
     "AgentVectorEnv",
     "Group",
     "JaxEnv",
+    "JaxLog",
+    "JaxParams",
     "ParallelEnv",
     "SlotVecEnv",
     "SlotVectorEnv",
@@ -35,6 +38,8 @@ _PLACES = {
     "AgentEnv": ("agent", "hedon[env]"),
     "AgentVectorEnv": ("agent_vector", "hedon[env]"),
     "JaxEnv": ("jax", "hedon[jax]"),
+    "JaxLog": ("jax_log", "hedon[jax]"),
+    "JaxParams": ("jax", "hedon[jax]"),
     "ParallelEnv": ("parallel", "hedon[env]"),
     "SlotVecEnv": ("slot", "stable-baselines3"),
     "SlotVectorEnv": ("slot_vector", "hedon[env]"),

@@ -12,7 +12,8 @@ from hedon.config.load import load_config, override_texts
 from hedon.config.problem import nearest
 from hedon.error import ArgumentError
 from hedon.experiment.argument import integer, seed_list
-from hedon.experiment.simulation import MAX_WORLD_SEED
+from hedon.experiment.rule import pinned, rules
+from hedon.experiment.simulation import MAX_WORLD_SEED, Simulation
 from hedon.text import brief
 
 _DRAWN = 2**32
@@ -124,3 +125,19 @@ def reset_mask(options: Any, worlds: int) -> NDArray[np.bool_]:
     if mask.shape != (worlds,) or mask.dtype != np.bool_ or not mask.any():
         raise ArgumentError(f"options[{RESET_MASK!r}]: must be ({worlds},) bool, true for at least one world")
     return mask
+
+
+def recordable(
+    config: Config, seeds: Sequence[int], threads: int, backend: str, record: Path | str | None, frames: int
+) -> Simulation:
+    """The worlds of an environment; if they are recorded, their config is pinned to its rules.
+
+    Raises:
+        ArgumentError: `frames` is given without `record`.
+        RuleError: A rule cannot be used.
+    """
+    found = rules(config) if record is not None else ()
+    if record is None and frames:
+        raise ArgumentError(f"frames = {brief(repr(frames))}: give record, the folder for them, too")
+    texts = tuple(rule.source for rule in found)
+    return Simulation(pinned(config, found) if found else config, seeds, threads, backend, texts)

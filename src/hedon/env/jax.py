@@ -9,12 +9,13 @@ import hashlib
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 from collections.abc import Iterable, Sequence
 from functools import cache, cached_property
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import jax
 import numpy as np
@@ -24,12 +25,11 @@ from hedon import _engine
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
 from hedon.copied import Copied
-from hedon.env.argument import chosen, driven, loaded, with_callers
+from hedon.env.argument import chosen, driven, loaded, recordable, with_callers
 from hedon.env.group import ACTIONS, FORMS, NOBODY, Form, Group
 from hedon.env.space import Spaces
 from hedon.error import ArgumentError, HedonError
 from hedon.experiment.argument import MAX_STEPS, MAX_WORLDS, integer
-from hedon.experiment.simulation import Simulation
 
 TARGET = "hedon_step"
 SOURCE = Path(__file__).with_name("xla.cpp")
@@ -49,12 +49,23 @@ class State(NamedTuple):
     agent_id: jax.Array
 
 
+class JaxParams(NamedTuple):
+    """What can differ between the worlds of a program, for `JaxEnv.reset` and `JaxEnv.step`.
+
+    Attributes:
+        max_steps: () int32, steps of a world after which it begins again; 0 for no end.
+    """
+
+    max_steps: jax.Array | int
+
+
 class JaxEnv(Copied):
     """Worlds that a program of JAX drives, with functions of one world as gymnax has them.
 
-    With several worlds, call the functions by `jax.vmap` over all of them. A copy has worlds of its own, which go on
-    from the same state. A world begins again by itself, with a seed
-    from the key of the step, when no driven agent is left, or at `max_steps`.
+    With several worlds, call the functions by `jax.vmap` over all of them: with a key for each, or with one key for a
+    population of policies, whose worlds then all begin alike. A copy has worlds of its own, which go on from the same
+    state. A world begins again by itself, with a seed from the key of the step, when no driven agent is left, or at
+    `max_steps`.
 
     Args:
         config: Settings of the worlds, as for `hedon.make`, like all that follow.
@@ -62,16 +73,17 @@ class JaxEnv(Copied):
         species: Whose agents the program drives: one name; None for the only one, or the only external one.
         actions: What their numbers are.
         repeat: Steps of the worlds in one step.
-        max_steps: Steps of a world after which it begins again; 0 for no end.
+        max_steps: Of `default_params`: steps of a world after which it begins again; 0 for no end.
         threads: As in `hedon.Simulation`; changes no result.
         backend: As in `hedon.Simulation`.
+        record: Folder for the records, one run for worlds that begin together; call `close` at the end.
+        frames: Steps of the worlds between two frames of the records; 0 for none.
         overrides: As for `hedon.make`.
 
     Attributes:
         columns: Names of the entries of an observation.
         slots: Of the species in a world: how many agents can live at once.
-        observation_space: The `gymnasium.spaces.Box` of the observations of one world, (slots, entries) float32.
-        action_space: The same of its actions, (slots, 2) float32.
+        default_params: What `reset` and `step` use where they get no `params`.
         simulation: The worlds themselves, to be read while no program runs.
 
     Raises:
@@ -97,6 +109,8 @@ class JaxEnv(Copied):
         max_steps: int = 0,
         threads: int = 0,
         backend: str = "",
+        record: Path | str | None = None,
+        frames: int = 0,
         overrides: Iterable[str] = (),
     ) -> None:
         config = loaded(config, overrides)
@@ -106,9 +120,14 @@ class JaxEnv(Copied):
         count = integer("worlds", worlds, 1, MAX_WORLDS)
         self._form = FORMS.index(chosen("actions", actions, FORMS))
         self._repeat = integer("repeat", repeat, 1, MAX_STEPS)
-        self._max_steps = integer("max_steps", max_steps, 0, MAX_STEPS)
-        self.simulation = Simulation(with_callers(config, names), range(count), threads, backend)
+        self.default_params = JaxParams(integer("max_steps", max_steps, 0, MAX_STEPS))
+        self.simulation = recordable(with_callers(config, names), range(count), threads, backend, record, frames)
         self.simulation._driven = True
+        self._watch: Any = None
+        if record is not None:
+            from hedon.env.watch import watch_of  # loads what writes tables
+
+            self._watch = watch_of(self.simulation, record, frames)
         self._species = list(config.species).index(names[0])
         self.columns = observation_columns(config, names[0])
         self.slots = config.species[names[0]].population.capacity
@@ -116,8 +135,23 @@ class JaxEnv(Copied):
         self._actions: Form = actions
         _register()
 
+    def close(self) -> None:
+        """Ends the records, if there are any.
+
+        Raises:
+            RecordError: They cannot be written.
+        """
+        if self._watch is not None:
+            self._watch.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
+        self.close()
+
     def __getstate__(self) -> dict[str, Any]:
-        return self.__dict__ | {"turn": self.simulation.engine.turn}
+        return self.__dict__ | {"turn": self.simulation.engine.turn, "_watch": None}  # a copy has no records
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         turn = state.pop("turn")
@@ -132,18 +166,20 @@ class JaxEnv(Copied):
         group = Group(self._species, self.columns, (), motor, self._actions, 1, self.slots)
         return Spaces(config, {self._name: group})
 
-    @property
-    def observation_space(self) -> Any:
-        """What all slots of one world observe: a Box, (slots, entries) float32. It needs Gymnasium."""
+    def observation_space(self, params: JaxParams | None = None) -> Any:
+        """What all slots of one world observe: a `gymnasium.spaces.Box`, (slots, entries) float32."""
         return self._spaces.box_of(self._name, (self.slots,))
 
-    @property
-    def action_space(self) -> Any:
-        """What all slots of one world do: a Box, (slots, 2) float32. It needs Gymnasium."""
+    def action_space(self, params: JaxParams | None = None) -> Any:
+        """What all slots of one world do: a `gymnasium.spaces.Box`, (slots, 2) float32."""
         return self._spaces.action_box(self._name, (self.slots,))
 
-    def reset(self, key: jax.Array) -> tuple[jax.Array, State]:
-        """Begins a world.
+    def reset(self, key: jax.Array, params: JaxParams | None = None) -> tuple[jax.Array, State]:
+        """Begins a world; outside `jax.vmap`, with several worlds, all of them by one seed.
+
+        Args:
+            key: From which the seed is taken.
+            params: None for `default_params`.
 
         Returns:
             The observations (slots, entries) float32, zeros where nobody lives, and the state.
@@ -151,11 +187,11 @@ class JaxEnv(Copied):
         nobody = jnp.full((self.slots,), NOBODY, jnp.int32)
         before = State(jnp.int32(0), jnp.uint32(0), nobody)
         still = jnp.zeros((self.slots, len(ACTIONS)), jnp.float32)
-        state, (seen, *_) = self._call(key, before, still, begins=True)
+        state, (seen, *_) = self._call(key, before, still, params, begins=True)
         return seen, state
 
     def step(
-        self, key: jax.Array, state: State, action: jax.Array
+        self, key: jax.Array, state: State, action: jax.Array, params: JaxParams | None = None
     ) -> tuple[jax.Array, State, jax.Array, jax.Array, dict[str, jax.Array]]:
         """Advances a world by `repeat` steps.
 
@@ -163,6 +199,7 @@ class JaxEnv(Copied):
             key: From which the seed is taken where the world begins again.
             state: The last one.
             action: (slots, 2) float32, left and right motor; rows without an agent are not read.
+            params: None for `default_params`.
 
         Returns:
             The observations (slots, entries) float32; the next state; rewards (slots,) float32 of who was there before;
@@ -171,10 +208,12 @@ class JaxEnv(Copied):
 
             When the program runs, an error of JAX says what is wrong with an action, or that the state is stale.
         """
-        state, (seen, paid, died, done) = self._call(key, state, jnp.asarray(action, jnp.float32), begins=False)
+        state, (seen, paid, died, done) = self._call(key, state, jnp.asarray(action, jnp.float32), params, begins=False)
         return seen, state, paid, done, {"terminated": died, "alive": state.agent_id != NOBODY}
 
-    def _call(self, key: jax.Array, state: State, action: jax.Array, *, begins: bool) -> tuple[State, Any]:
+    def _call(
+        self, key: jax.Array, state: State, action: jax.Array, params: JaxParams | None, *, begins: bool
+    ) -> tuple[State, Any]:
         if action.shape != (self.slots, len(ACTIONS)):
             raise ArgumentError(f"action: must be of shape {(self.slots, len(ACTIONS))}, not {action.shape}")
         slots = (self.slots,)
@@ -188,14 +227,19 @@ class JaxEnv(Copied):
                     f"state.{name}: must be {np.dtype(kind)} of shape {shape}, as reset and step return it, not "
                     f"{jnp.asarray(given).dtype} of shape {jnp.shape(given)}"
                 )
-        numbers = (self.simulation.engine.id, self._species, self._form, self._repeat, self._max_steps, int(begins))
-        call = np.array([_engine.batch_address(), *numbers, self.slots, len(self.columns)], np.int64)
+        limit = jnp.asarray((params or self.default_params).max_steps)
+        if limit.shape != () or not jnp.issubdtype(limit.dtype, jnp.integer):
+            raise ArgumentError(f"params.max_steps: must be one whole number, not {limit.dtype} of shape {limit.shape}")
+        numbers = (self.simulation.engine.id, self._species, self._form, self._repeat, int(begins))
+        watch = 0 if self._watch is None else self._watch.address
+        call = np.array([_engine.batch_address(), *numbers, self.slots, len(self.columns), watch], np.int64)
         shapes = [((), jnp.int32), ((), jnp.uint32), (slots, jnp.int32), ((*slots, len(self.columns)), jnp.float32)]
         shapes += [(slots, jnp.float32), (slots, jnp.bool_), ((), jnp.bool_)]
         results = [jax.ShapeDtypeStruct(shape, kind) for shape, kind in shapes]
         step = jax.ffi.ffi_call(TARGET, results, has_side_effect=True, vmap_method="broadcast_all")
         seed = jax.random.key_data(key).astype(jnp.uint32)[-2:]
-        world, turn, ids, *rest = step(state.world, state.turn, seed, state.agent_id, action, call=call)
+        given = (state.world, state.turn, seed, state.agent_id, action, limit.astype(jnp.int32))
+        world, turn, ids, *rest = step(*given, call=call)
         return State(world, turn, ids), rest
 
 
@@ -218,6 +262,7 @@ def _library() -> Path:
     if compiler is None:
         raise HedonError("hedon.env.JaxEnv needs a C++ compiler on first use, and finds none: install g++, or set CXX")
     try:
+        print("hedon: compiling the call of JAX, once for this jaxlib (some seconds)", file=sys.stderr)
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as place:
             made = Path(place) / library.name

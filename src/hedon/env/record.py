@@ -89,14 +89,18 @@ class Records:
         try:
             self._simulation.engine.run(1)
         except EngineError as error:
-            for run in self._runs:
-                run.fail(str(error))
-            self._closed = True
+            self.fail(str(error))
             raise
         except KeyboardInterrupt:  # raised when the step was done
             self.note(time.perf_counter() - begun)
             raise
         self.note(time.perf_counter() - begun)
+
+    def fail(self, fault: str) -> None:
+        """Ends the records at an error of a world."""
+        for run in self._runs:
+            run.fail(fault)
+        self._closed = True
 
     def begin(self) -> None:
         """Begins the folders of worlds that are about to do their first step."""

@@ -15,15 +15,13 @@ from numpy.typing import NDArray
 from hedon.config.config import Config
 from hedon.config.layout import observation_columns
 from hedon.copied import Cloned
-from hedon.env.argument import chosen, driven, reset_mask, with_callers, world_seeds
+from hedon.env.argument import chosen, driven, recordable, reset_mask, with_callers, world_seeds
 from hedon.env.group import FORMS, Form, Group, act
 from hedon.env.keep import arrays_in, text_of
 from hedon.env.space import Spaces
 from hedon.error import ArgumentError
 from hedon.experiment.argument import MAX_SEED, MAX_STEPS, MAX_WORLDS, integer
-from hedon.experiment.rule import pinned, rules
 from hedon.experiment.simulation import Simulation
-from hedon.text import brief
 
 RENDER_MODES = ("rgb_array", "human")
 
@@ -95,11 +93,7 @@ class VectorEnv(Cloned):
         self.render_mode = chosen("render_mode", render_mode, RENDER_MODES, empty=True)
         form = chosen("actions", actions, FORMS)
         config = with_callers(config, names)
-        found = rules(config) if record is not None else ()
-        if record is None and frames:
-            raise ArgumentError(f"frames = {brief(repr(frames))}: give record, the folder for them, too")
-        texts = tuple(rule.source for rule in found)
-        simulation = Simulation(pinned(config, found) if found else config, seeds, threads, backend, texts)
+        simulation = recordable(config, seeds, threads, backend, record, frames)
         if world is not None and record is not None:
             raise ArgumentError("record: records begin with worlds, and these go on from a saved one: leave one out")
         self._start = None if world is None else simulation._become(world)

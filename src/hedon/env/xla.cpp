@@ -25,15 +25,16 @@ static ffi::Error refuse(const Expected& expected) {
 }
 
 static ffi::Error step(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Span<const int64_t> call) {
-  constexpr size_t NUMBERS = 9, INPUTS = 5, OUTPUTS = 7;
+  constexpr size_t NUMBERS = 9, INPUTS = 6, OUTPUTS = 7;
   if (call.size() != NUMBERS || args.size() != INPUTS || rets.size() != OUTPUTS)
     return ffi::Error::InvalidArgument("hedon: this program was made by another version of hedon");
-  const int64_t slots = call[7], entries = call[8];
+  const int64_t slots = call[6], entries = call[7];
   const Expected inputs[INPUTS] = {{"state.world", ffi::S32, 1},
                                    {"state.turn", ffi::U32, 1},
                                    {"key", ffi::U32, 2},
                                    {"state.agent_id", ffi::S32, slots},
-                                   {"action", ffi::F32, 2 * slots}};
+                                   {"action", ffi::F32, 2 * slots},
+                                   {"params.max_steps", ffi::S32, 1}};
   const Expected outputs[OUTPUTS] = {{"world", ffi::S32, 1},       {"turn", ffi::U32, 1},
                                      {"agent_id", ffi::S32, slots}, {"observation", ffi::F32, slots * entries},
                                      {"reward", ffi::F32, slots},   {"terminated", ffi::PRED, slots},

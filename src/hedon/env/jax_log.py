@@ -1,0 +1,71 @@
+"""Episodes of agents in a program of JAX: what each life was paid and how long it took."""
+
+from typing import Any, NamedTuple
+
+import jax
+from jax import numpy as jnp
+
+from hedon.env.group import NOBODY
+from hedon.env.jax import JaxEnv, JaxParams, State
+
+
+class LogState(NamedTuple):
+    """A state of `JaxEnv` with what its agents have been paid so far.
+
+    Attributes:
+        env_state: Of the environment.
+        paid: (slots,) float32, what the agent in each slot has been paid since it was there.
+        lived: (slots,) int32, for how many steps of the environment.
+    """
+
+    env_state: State
+    paid: jax.Array
+    lived: jax.Array
+
+
+class JaxLog:
+    """`JaxEnv` with episodes in its infos, as PureJaxRL's wrapper has them; an episode is a life in a slot.
+
+    `info` gets `returned_episode` (slots,) bool, where a life has ended, by death or since its world has begun again;
+    and for these lives `returned_episode_returns` (slots,) float32, what each was paid, and `returned_episode_lengths`
+    (slots,) int32, how many steps of the environment it took. All else is as the environment has it.
+
+    Args:
+        env: The environment.
+
+    Example:
+        >>> import jax
+        >>> from hedon.env import JaxEnv, JaxLog
+        >>> env = JaxLog(JaxEnv("baseline"))
+        >>> observations, state = jax.jit(env.reset)(jax.random.key(0))
+    """
+
+    def __init__(self, env: JaxEnv) -> None:
+        self.env = env
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "env":  # of a copy that is being made
+            raise AttributeError(name)
+        return getattr(self.env, name)
+
+    def reset(self, key: jax.Array, params: JaxParams | None = None) -> tuple[jax.Array, LogState]:
+        """As `JaxEnv.reset`, with nothing paid so far."""
+        seen, state = self.env.reset(key, params)
+        slots = state.agent_id.shape
+        return seen, LogState(state, jnp.zeros(slots, jnp.float32), jnp.zeros(slots, jnp.int32))
+
+    def step(
+        self, key: jax.Array, state: LogState, action: jax.Array, params: JaxParams | None = None
+    ) -> tuple[jax.Array, LogState, jax.Array, jax.Array, dict[str, jax.Array]]:
+        """As `JaxEnv.step`, with the lives that have ended in its infos."""
+        seen, after, paid, done, info = self.env.step(key, state.env_state, action, params)
+        there = state.env_state.agent_id != NOBODY
+        total, length = state.paid + paid, state.lived + there
+        ended = there & (info["terminated"] | done)
+        told = {
+            "returned_episode": ended,
+            "returned_episode_returns": jnp.where(ended, total, 0.0),
+            "returned_episode_lengths": jnp.where(ended, length, 0),
+        }
+        kept = LogState(after, jnp.where(ended, 0.0, total), jnp.where(ended, 0, length))
+        return seen, kept, paid, done, info | told
