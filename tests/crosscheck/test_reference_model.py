@@ -14,6 +14,7 @@ from worlds import set_scene
 from hedon.config.config import Config
 from hedon.config.field import Setting, leaves, sections, settings
 from hedon.config.load import load_config
+from hedon.config.schema.measure import MeasureConfig
 from hedon.config.schema.physics import PhysicsConfig
 from hedon.config.schema.settings import PROVENANCE
 from hedon.experiment.simulation import Simulation
@@ -120,6 +121,7 @@ NETWORKS = "how networks learn: test_ppo, test_gae, test_adam, test_window"
 RAYS = "what rays read is taken from the engine: test_cast_rays, test_sensor"
 JUDGED_ELSEWHERE = {
     **dict.fromkeys(PROVENANCE, "where a config comes from changes no result"),
+    **{f"measure.<kind>.{name}": "what is measured changes no result" for name in settings(MeasureConfig)},
     **{
         f"physics.{name}": "where bodies move is taken from the engine: tests/physics"
         for name in settings(PhysicsConfig)

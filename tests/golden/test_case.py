@@ -10,7 +10,7 @@ from hedon.config.config import Config
 from hedon.config.field import sections, settings
 from hedon.config.load import FIDELITIES, PRESETS
 from hedon.config.schema.evolution import FAMILY_GENES, LEARNING_GENES
-from hedon.config.schema.settings import PROVENANCE
+from hedon.config.schema.settings import changes_worlds
 from hedon.config.schema.species import PER_SPECIES, SpeciesConfig
 
 AS_DATA = {"world.founders": "founders", "world.networks": "networks"}
@@ -20,7 +20,7 @@ AS_DATA = {"world.founders": "founders", "world.networks": "networks"}
 def every_setting(section: type = Config, path: str = "") -> Iterator[tuple[str, tuple[str, ...], Any]]:
     """The path of every setting in a file of one species (`*` for names), its choices and its default."""
     for name, setting in settings(section).items():
-        if name not in PROVENANCE:
+        if changes_worlds(f"{path}{name}"):
             yield path + name, setting.choices, setting.default
     for name, inner in sections(section).items():
         below = "" if name == "species" else f"{path}{name}." + ("*." if inner.repeated else "")

@@ -15,7 +15,7 @@ from hedon.config.config import Config
 from hedon.config.field import Setting, leaves
 from hedon.config.load import load_config
 from hedon.config.problem import ConfigError, format_value
-from hedon.config.schema.settings import PROVENANCE
+from hedon.config.schema.settings import changes_worlds
 from hedon.error import EngineError
 from hedon.experiment.memory import memory_needed
 from hedon.experiment.simulation import Simulation
@@ -56,7 +56,7 @@ SOURCES = {
     ),
 }
 SETTINGS = {
-    source: [each for each in leaves(load_config(preset, overrides=texts)) if each[0] not in PROVENANCE]
+    source: [each for each in leaves(load_config(preset, overrides=texts)) if changes_worlds(each[0])]
     for source, (preset, texts) in SOURCES.items()
 }
 EDGES = [

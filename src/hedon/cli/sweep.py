@@ -165,12 +165,14 @@ def report(
     """
     from hedon.compare.report import sweep_answer
     from hedon.ensemble.collect import collect as write_table
+    from hedon.ensemble.plan import load_bases
+    from hedon.measure.world_measure import titles_of
     from hedon.report.answer import write_answer
 
     made, store = _opened(place)
     names = [name.strip() for name in only.split(",")] if only else []
     folder = out or (store.folder or Path("sweeps") / made.name) / "report"
-    found = sweep_answer(made, write_table(made, store), names)
+    found = sweep_answer(made, write_table(made, store), names, titles_of(load_bases(made, store)))
     figures = [path for path in write_answer(folder, found) if path.suffix == ".svg"]
     page = folder / f"{found.name}.html"
     make_console().print(f"wrote {page}, its data and {count(len(figures), 'figure')} beside it", soft_wrap=True)
@@ -233,7 +235,8 @@ def _run_and_report(
     from hedon.ensemble.batches import batch_jobs
     from hedon.ensemble.collect import collect as write_table
     from hedon.ensemble.demand import parse_part
-    from hedon.ensemble.plan import load_plan
+    from hedon.ensemble.plan import load_bases, load_plan
+    from hedon.measure.world_measure import titles_of
 
     console, share, again = make_console(), parse_part(part), f"Go on with: hedon sweep resume {_quoted(store)}"
     _say_size(made, console)
@@ -247,7 +250,9 @@ def _run_and_report(
             break
         console.print("The sweep has grown meanwhile:")
     if part is None:
-        console.print(analysis_group({"sweep": settings_table(made, write_table(made, store), most=PRINTED)}))
+        titles = titles_of(load_bases(made, store))
+        table = settings_table(made, write_table(made, store), most=PRINTED, titles=titles)
+        console.print(analysis_group({"sweep": table}))
     console.print(f"All done. Next: hedon sweep report {_quoted(store)}", soft_wrap=True)
 
 

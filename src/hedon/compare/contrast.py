@@ -162,7 +162,7 @@ def compare_answer(
         if rows.is_empty():
             raise CompareError(f"no world with {by} = {name} is done yet: there is nothing to compare")
     held = [name for name in worlds.factors if name not in (by, *others)]
-    shown = responses(worlds.rows, only, [*worlds.factors, by])
+    shown = responses(worlds.rows, only, [*worlds.factors, by], worlds.titles)
     if not only:
         known = [name for name in shown if first[name].count() and second[name].count()]
         shown = {name: shown[name] for name in known}

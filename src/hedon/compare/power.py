@@ -64,7 +64,7 @@ def spreads(
     factors = [*pilot.factors, *([by] if by and by not in pilot.factors else [])]
     _require_one_each(pilot.rows, factors)
     found = []
-    for name, title in responses(pilot.rows, only, factors).items():
+    for name, title in responses(pilot.rows, only, factors, pilot.titles).items():
         if by is not None:
             found += _spread(title, PAIRS, _changes(pilot, name, by, between))
         groups = pilot.rows.partition_by(factors) if factors else [pilot.rows]

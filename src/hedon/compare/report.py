@@ -22,20 +22,23 @@ MOST_CELLS = 400
 """Most cells of a map, and most settings of the page's table."""
 
 
-def sweep_answer(plan: SweepPlan, table: pl.DataFrame, only: Sequence[str] = ()) -> Answer:
+def sweep_answer(
+    plan: SweepPlan, table: pl.DataFrame, only: Sequence[str] = (), titles: Mapping[str, str] | None = None
+) -> Answer:
     """Response curves for each factor of a sweep, maps for each two that are crossed, and a table of every response.
 
     Args:
         plan: Of the sweep.
         table: Of its worlds so far.
         only: Columns of the table to show; by default the usual ones.
+        titles: Of measures that its configs add, by name.
 
     Raises:
         CompareError: There is no world yet, or a column is not one of numbers.
     """
     if table.is_empty():
         raise CompareError("no batch of the sweep is done yet: there is nothing to report")
-    shown = responses(table, only, plan.factors)
+    shown = responses(table, only, plan.factors, titles)
     figures: list[NamedFigure] = []
     varied = [factor for factor in plan.factors if table[factor].n_unique() > 1]
     for factor in varied:
@@ -85,12 +88,16 @@ def _alone(table: pl.DataFrame) -> str:
 
 
 def settings_table(
-    plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str] | None = None, most: int = MOST_CELLS
+    plan: SweepPlan,
+    table: pl.DataFrame,
+    shown: Mapping[str, str] | None = None,
+    most: int = MOST_CELLS,
+    titles: Mapping[str, str] | None = None,
 ) -> ResultTable:
     """A row per setting: its worlds, and the mean and interval of each response."""
     if table.is_empty():
         return make_table("sweep", f"Sweep {plan.name}: no world yet", [])
-    shown, factors = shown or responses(table, (), plan.factors), list(plan.factors)
+    shown, factors = shown or responses(table, (), plan.factors, titles), list(plan.factors)
     counts: dict[tuple[Any, ...], int] = {(): table.height}
     counts |= {tuple(at): rows.height for at, rows in table.group_by(factors)} if factors else {}
     rows: dict[tuple[Any, ...], dict[str, Any]] = {}

@@ -1,7 +1,7 @@
 """The measures that a comparison shows, and their means over worlds of equal settings."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -30,8 +30,16 @@ class Point:
     mean: Interval
 
 
-def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str]) -> dict[str, str]:
+def responses(
+    table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str], titles: Mapping[str, str] | None = None
+) -> dict[str, str]:
     """The columns to show, with their titles.
+
+    Args:
+        table: Of worlds.
+        asked: Columns to show; by default the usual ones.
+        factors: Columns that distinguish conditions.
+        titles: Of measures that configs add, by name.
 
     Raises:
         CompareError: One is not a column of numbers.
@@ -43,7 +51,7 @@ def responses(table: pl.DataFrame, asked: Sequence[str], factors: Sequence[str])
             near = nearest(name, fit)
             hint = f"; did you mean {near}?" if near else f" (there are {', '.join(fit)})"
             raise CompareError(f"--only: {name!r} is not a column of numbers of the table{hint}")
-    known = {name: found for name in fit if (found := column_measure(name))}
+    known = {name: found for name in fit if (found := column_measure(name, titles))}
     shown = asked or [name for name, found in known.items() if found.usual] or fit
     return {name: known[name].title if name in known else name for name in shown}
 

@@ -12,9 +12,9 @@ from hedon.analysis.world.future import shared_pasts
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.compare.error import CompareError
 from hedon.ensemble.collect import collect, table_value
-from hedon.ensemble.plan import PLAN, load_plan
+from hedon.ensemble.plan import PLAN, load_bases, load_plan
 from hedon.ensemble.store import Store
-from hedon.measure.catalogue import world_row
+from hedon.measure.world_measure import titles_of, world_row
 from hedon.record.folder import holds_run
 from hedon.record.reader import open_run
 from hedon.report.answer import CAUTIONS, FACTORS, WORLDS
@@ -35,6 +35,7 @@ class WorldTable:
         steps: The length of each world, if all have the same [step].
         planned: The values of each factor in the order of a sweep's plan, including those without a world so far.
         cautions: Sentences about worlds that are not independent.
+        titles: Of measures that configs add, by name.
     """
 
     name: str
@@ -43,6 +44,7 @@ class WorldTable:
     steps: int | None = None
     planned: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     cautions: tuple[str, ...] = ()
+    titles: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_table(source: str) -> WorldTable:
@@ -97,7 +99,8 @@ def read_both(sources: tuple[str, str]) -> WorldTable:
     rows = pl.concat(parts, how="diagonal_relaxed")
     steps = lengths[0] if len(set(lengths)) == 1 else None
     cautions = (*tables[0].cautions, *tables[1].cautions)
-    return WorldTable(" and ".join(sources), rows, (SOURCE, *factors), steps, cautions=cautions)
+    titles = {**tables[0].titles, **tables[1].titles}
+    return WorldTable(" and ".join(sources), rows, (SOURCE, *factors), steps, cautions=cautions, titles=titles)
 
 
 def _run_folders(source: str) -> list[Path]:
@@ -136,7 +139,9 @@ def _runs_table(source: str, records: Sequence[WorldRecord], cautions: tuple[str
         worlds.setdefault((condition, world.seed), []).append(world.until(end))
     several = len({condition for condition, _ in worlds}) > 1
     rows = [({CONDITION: condition} if several else {}) | world_row(each) for (condition, _), each in worlds.items()]
-    return WorldTable(source, _frame(rows), (CONDITION,) if several else (), end, cautions=cautions)
+    titles = titles_of(world.config for world in records)
+    factors = (CONDITION,) if several else ()
+    return WorldTable(source, _frame(rows), factors, end, cautions=cautions, titles=titles)
 
 
 def _other_table(source: str) -> WorldTable:
@@ -166,7 +171,7 @@ def _sweep_table(source: str, store: Store) -> WorldTable:
     for name in plan.factors:
         values = [table_value(each.settings[name]) for each in plan.conditions]
         planned[name] = list(dict.fromkeys(map(str, values) if rows.schema[name] == pl.String else values))
-    return WorldTable(source, rows, plan.factors, plan.steps, planned)
+    return WorldTable(source, rows, plan.factors, plan.steps, planned, titles=titles_of(load_bases(plan, store)))
 
 
 def _answer(folder: Path) -> Mapping[str, Any] | None:

@@ -7,7 +7,7 @@ from typing import Any
 
 from hedon.config.field import Setting, inner_sections, leaves, sections, settings
 from hedon.config.problem import format_value
-from hedon.config.schema.settings import PROVENANCE, Settings
+from hedon.config.schema.settings import Settings, changes_worlds
 from hedon.config.schema.species import ONLY, PER_SPECIES, default_path
 from hedon.error import ArgumentError
 from hedon.text import brief
@@ -50,13 +50,13 @@ def section_paths(config: Settings) -> list[str]:
 
 
 def file_leaves(config: Settings) -> Iterator[tuple[str, Setting, Any]]:
-    """Every setting as `leaves` has it, but without the names of preset and fidelity.
+    """Every setting as `leaves` has it, but without those that change no world: names and measures.
 
     Where there is only the species of a file without `[species]`, paths are as in such a file: `energy.initial`.
     """
     unnamed = f"species.{ONLY}." if list(config.species) == [ONLY] else ""
     for path, setting, value in leaves(config):
-        if path not in PROVENANCE:
+        if changes_worlds(path):
             yield path.removeprefix(unnamed), setting, value
 
 
@@ -66,7 +66,7 @@ def flatten(config: Settings) -> dict[str, Any]:
 
 
 def digest(config: Settings) -> str:
-    """A fingerprint of a config: equal exactly if all settings are equal, apart from names and colors.
+    """A fingerprint of a config: equal exactly if all settings are equal, apart from names, colors and measures.
 
     It is of the complete config and of the version of the schema.
 
@@ -84,7 +84,7 @@ class Fingerprint:
     """
 
     def __init__(self, config: Settings) -> None:
-        counted = (each for each in leaves(config) if each[0] not in PROVENANCE and not each[0].endswith(".color"))
+        counted = (each for each in leaves(config) if changes_worlds(each[0]) and not each[0].endswith(".color"))
         self._rows = {path: json.dumps([path, value]) for path, _, value in counted}
 
     def digest(self, values: Mapping[str, Any]) -> str:

@@ -249,6 +249,16 @@ def _tuples(value: Any) -> Any:
     return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
+def load_bases(plan: SweepPlan, store: Store) -> list[Config]:
+    """The configs that the conditions of a sweep begin with, as far as they are there.
+
+    Raises:
+        ConfigError: One cannot be read.
+    """
+    texts = ((_config_name(base), store.read(_config_name(base))) for base in plan.places)
+    return [parse_config(text.decode(), f"{store.location}/{name}") for name, text in texts if text is not None]
+
+
 def load_config_of(store: Store, key: str, base: str, changed: Mapping[str, Any]) -> Config:
     """The config of a condition.
 

@@ -13,7 +13,7 @@ from hedon.config.config import Config
 from hedon.config.dump import dump_toml
 from hedon.error import ArgumentError, EngineError
 from hedon.experiment.argument import MAX_STEPS, different, folder, integer, seed_list
-from hedon.experiment.plan import free_folder
+from hedon.experiment.plan import free_folder, require_measures
 from hedon.experiment.recorder import Recorder, Start
 from hedon.experiment.sample import snapshot
 from hedon.experiment.session import WorldEnd, end_of, first_manifest, last_manifest
@@ -55,6 +55,7 @@ class Records:
 
     Raises:
         ArgumentError: The config names founders or networks, which only a run begins with, or another value is wrong.
+        ConfigError: A measure that the config adds cannot be computed.
         RecordError: The folder holds a run already, is in use, or cannot be written.
     """
 
@@ -63,6 +64,7 @@ class Records:
         if config.world.founders or config.world.networks:
             raise ArgumentError("record: the config names founders or networks, which driven worlds do not begin with")
         different(seed_list(simulation.seeds))
+        require_measures(config)
         self.folder = folder("record", out)
         self._frames = integer("frames", frames, 0, MAX_STEPS)
         self._simulation, self._closed = simulation, False

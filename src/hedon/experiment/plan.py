@@ -48,7 +48,7 @@ class RunPlan:
             all others are read from their files.
 
     Raises:
-        ConfigError: A setting is wrong.
+        ConfigError: A setting is wrong, or a measure that the config adds.
         FounderError: The founders do not fit the config.
         NetworkError: The networks do not.
         RuleError: A rule is not there, or is not the one that the config is pinned to.
@@ -82,6 +82,7 @@ class RunPlan:
         rules: Sequence[RuleSource] = (),
     ) -> None:
         config = _without_caller(validated(config))
+        require_measures(config)
         found = find_rules(config, rules)
         checked = {
             "config": _with_networks(_with_founders(pinned(config, found), founders), networks),
@@ -200,6 +201,18 @@ def seed_span(seeds: Sequence[int]) -> str:
     if tuple(seeds) == tuple(range(seeds[0], seeds[-1] + 1)):
         return f"s{seeds[0]}-{seeds[-1]}"
     return f"{len(seeds)}seeds"
+
+
+def require_measures(config: Config) -> None:
+    """Refuses a config whose own measures cannot be computed, before anything is run.
+
+    Raises:
+        ConfigError: An expression is wrong, or a name is taken.
+    """
+    if config.measure:
+        from hedon.measure.world_measure import own_measures  # loads what reads records
+
+        own_measures(config)
 
 
 def free_folder(path: Path, taken: Collection[Path] = ()) -> Path:

@@ -3,9 +3,8 @@
 A measure added here appears in all of them. Measures of genes are made for each gene.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import polars as pl
 
@@ -201,34 +200,21 @@ def last_born_mean(gene: str) -> Measure:
     return Measure(f"{gene}_last", f"{gene}, agents born last", of)
 
 
-def column_measure(column: str) -> Measure | None:
+def column_measure(column: str, titles: Mapping[str, str] | None = None) -> Measure | None:
     """The measure that a column of a table holds; None if it holds something else.
 
     Where worlds have several species, "prey.alive_mean" is a measure of the species prey, and its title says so.
+
+    Args:
+        column: its name.
+        titles: of measures that configs add, by name.
     """
     species, _, name = column.rpartition(".")
     found = MEASURES.get(name)
+    if found is None and titles and name in titles:
+        found = Measure(name, titles[name], lambda world: None, usual=True)
     if found is None and name.endswith("_mean") and name.startswith(_GENES):
         found = gene_mean(name.removesuffix("_mean"))
     if found is None or not species:
         return found
     return replace(found, name=column, title=f"{found.title}: {species}")
-
-
-def world_row(records: Sequence[WorldRecord]) -> dict[str, Any]:
-    """Every measure of one world: a row of a table of worlds.
-
-    Args:
-        records: The records of the world, one per species.
-
-    Returns:
-        The seed, whether the world is extinct, and each measure under its name. If there are several species, names of
-        measures begin with the species, as in "prey.alive_mean", and an extinct world is one without any species.
-    """
-    row: dict[str, Any] = {"seed": records[0].seed, "extinct": all(each.extinct_step is not None for each in records)}
-    for record in records:
-        before = f"{record.species}." if len(records) > 1 else ""
-        measures = [each for each in MEASURES.values() if each.applies(record)]
-        measures += map(gene_mean, record.weight_names)
-        row |= {f"{before}{measure.name}": measure.of(record) for measure in measures}
-    return row

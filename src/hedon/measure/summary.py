@@ -17,7 +17,7 @@ from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
 from hedon.analysis.gene.weight import last_living, weight_spreads
 from hedon.analysis.world.ledger import world_ledger
 from hedon.analysis.world.record import WorldRecord, read_worlds
-from hedon.measure.catalogue import MEASURES
+from hedon.measure.world_measure import measures_of, titles_of
 from hedon.record.reader import Run
 from hedon.statistic.interval import AMOUNT, mean_interval
 
@@ -60,6 +60,7 @@ def summarize(run: Run) -> dict[str, Any]:
         "steps_asked": manifest.steps_asked,
         "steps": sum(world["steps"] for world in worlds),
         **(_several(records, worlds, means) if run.columns.several else next(iter(means.values()))),
+        "measures": titles_of([run.config]),
         "damaged_parts": [str(path.relative_to(run.path)) for path in run.damaged_parts()],
         "worlds": worlds,
     }
@@ -112,7 +113,7 @@ def _means(worlds: Sequence[WorldRecord], fares: Sequence[Fare]) -> dict[str, An
 
 
 def _over_worlds(world: WorldRecord, fares: Sequence[Fare]) -> dict[str, Any]:
-    averaged = [each for each in MEASURES.values() if each.averaged and each.applies(world)]
+    averaged = [each for each in measures_of(world.config).values() if each.averaged and each.applies(world)]
     intervals = {each.name: mean_interval((fare[each.name] for fare in fares), within=each.within) for each in averaged}
     weights = {name: mean_interval(fare["weights"][name]["mean"] for fare in fares) for name in world.weight_names}
     return {
@@ -152,9 +153,9 @@ def _world(
 
 
 def _fare(world: WorldRecord) -> Fare:
-    living = last_living(world.agents, world.population)
+    living, measures = last_living(world.agents, world.population), measures_of(world.config).values()
     return {
-        **{measure.name: measure.of(world) for measure in MEASURES.values() if measure.applies(world)},
+        **{measure.name: measure.of(world) for measure in measures if measure.applies(world)},
         "eaten": {meal: world.population[f"eaten_{meal}"].sum() for meal in (*world.food_kinds, *world.prey)},
         "weights": weight_spreads(living, world.weight_names),
         "ledger": world_ledger(world.population, world.agents),

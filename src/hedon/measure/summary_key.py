@@ -37,6 +37,8 @@ MEAN_KEYS: dict[str, str] = {
 _END: dict[str, str] = {
     "reported": "by study, what its source reports of this preset: numbers or bounds under keys of this file, `steps` "
     "of its worlds, a `claim`, `ends`; empty unless `modified` is false",
+    "measures": "by name: titles of the measures that the config adds; each is also a key of every world, and its mean "
+    "over worlds one of the run, or of the species",
     "damaged_parts": "files that could not be read and are missing in all numbers",
     "worlds": "list, one entry per world, see below",
 }
@@ -95,3 +97,8 @@ WORLD_SEVERAL_KEYS: dict[str, str] = {
 
 CAUSE_KEYS: dict[str, str] = {each.name: each.documentation for each in MEASURES.values() if each.condition is not None}
 """Beside `FARE_KEYS` where agents die of more than age and energy."""
+
+RESERVED = frozenset().union(
+    RUN_KEYS, SEVERAL_KEYS, HUNT_KEYS, WORLD_KEYS, WORLD_SEVERAL_KEYS, CAUSE_KEYS, ("condition", "digest", "repetition")
+)
+"""Names that no measure of a config can have, since they are keys or columns already."""

@@ -9,7 +9,7 @@ from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.topic.world import regime
 from hedon.analysis.world.record import WorldRecord, by_condition
 from hedon.figure.named import NamedFigure
-from hedon.measure.catalogue import world_row
+from hedon.measure.world_measure import world_row
 from hedon.record.folder import FIGURES
 from hedon.report.answer import FACTORS, WORLDS, Answer, drawn_file, table_section, write_answer
 from hedon.report.markdown import escape_markdown

@@ -17,12 +17,12 @@ from hedon.config.layer import EVERY
 from hedon.config.load import load_config
 from hedon.config.problem import ConfigError, Problem, format_value
 from hedon.config.rule_path import absolute_rule
-from hedon.config.schema.settings import PROVENANCE
+from hedon.config.schema.settings import changes_worlds
 from hedon.config.schema.species import PER_SPECIES
 from hedon.config.validate import rebuild
 from hedon.ensemble.condition import DIGITS, Base, Settings, SweepCondition, changes
 from hedon.error import HedonError
-from hedon.experiment.plan import RunPlan
+from hedon.experiment.plan import RunPlan, require_measures
 from hedon.experiment.rule import rules_beside
 from hedon.sweep.factor import FIDELITY, PRESET
 
@@ -107,7 +107,9 @@ def make_conditions(loader: Loader, settings: Sequence[Settings]) -> Conditions:
                 invalid[index] = result
             else:
                 found[index] = result
-                bases.setdefault(base.digest, base)
+                if base.digest not in bases:
+                    require_measures(base.config)
+                    bases[base.digest] = base
     order = sorted(found)
     return Conditions(tuple(found[i] for i in order), bases, tuple(invalid[i] for i in sorted(invalid)))
 
@@ -179,7 +181,7 @@ def _base(plan: RunPlan, places: Mapping[str, tuple[str, ...]]) -> Base:
 
 def _places(config: Config, name: str) -> Iterator[str]:
     """The complete paths that a factor's name stands for, as in a file: `birth.kappa` is that of all species."""
-    known = {path for path, _, _ in leaves(config) if path not in PROVENANCE}
+    known = {path for path, _, _ in leaves(config) if changes_worlds(path)}
     paths = [f"species.{each}.{name}" for each in config.species] if name.partition(".")[0] in PER_SPECIES else [name]
     if name.startswith(f"food.{EVERY}."):
         paths = [name.replace(EVERY, kind, 1) for kind in config.food]

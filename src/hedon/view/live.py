@@ -11,7 +11,7 @@ from hedon.config.field import Setting, leaves
 from hedon.config.fixed import fixed_path
 from hedon.config.load import PRESETS, describe_preset, is_modified, load_config
 from hedon.config.rule_path import rule_places
-from hedon.config.schema.settings import PROVENANCE
+from hedon.config.schema.settings import changes_worlds
 from hedon.view.engine_text import engine_text
 from hedon.view.layout import describe
 from hedon.view.page import ViewError
@@ -79,7 +79,7 @@ def _origin(config: Config) -> str:
 
 def _settings(config: Config) -> Iterator[dict[str, Any]]:
     """The numbers and choices that the engine gets as they are, with their schema."""
-    rows, reached = (row for row in leaves(config) if row[0] not in PROVENANCE), engine_paths(config)
+    rows, reached = (row for row in leaves(config) if changes_worlds(row[0])), engine_paths(config)
     for (path, setting, value), shown in zip(rows, flatten(config), strict=True):
         single = setting.choices or setting.type in (int, float)
         if single and path in reached and not setting.doc.shapes:

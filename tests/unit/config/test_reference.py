@@ -11,6 +11,7 @@ from hedon.config import ConfigError, load_config
 from hedon.config.reference import reference
 
 EVERY_TABLE = """
+[measure.peak]
 [food.fungus]
 gives = { energy = 1.0 }
 schedule.growth_rate.points = [[0, 1.0]]
@@ -46,6 +47,7 @@ SAID = {
 }
 """Where it differs from the defaults: by what it says, and by its name."""
 KINDS = {
+    "measure.<kind>": "measure.peak",
     "food.<kind>": "food.fungus",
     "store.<kind>": "store.water",
     "neighbor.<kind>": "neighbor.near",

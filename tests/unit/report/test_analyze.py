@@ -111,7 +111,7 @@ def test_what_is_printed(analysis: Analysis) -> None:
 
 
 def test_what_is_printed_on_a_narrow_terminal(analysis: Analysis) -> None:
-    console = Console(width=60, record=True, file=io.StringIO())
+    console = Console(width=60, record=True, file=io.StringIO(), force_terminal=True)
     console.print(analysis_group(analysis.tables))
     text = console.export_text()
     assert max(map(len, text.splitlines())) <= 60

@@ -169,6 +169,6 @@ def test_one_world_has_no_column_of_intervals(tmp_path: Path) -> None:
 
 
 def _print(summary: dict, width: int = 120) -> str:
-    console = Console(width=width, record=True, file=io.StringIO())
+    console = Console(width=width, record=True, file=io.StringIO(), force_terminal=True)
     console.print(summary_table(summary))
     return console.export_text()

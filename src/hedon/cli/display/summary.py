@@ -89,7 +89,8 @@ def _over_worlds(summary: Mapping[str, Any], part: _Part) -> list[PrintedTable |
     headers = ["mean over worlds", "value", "95 % interval"]
     headers += [f"{name} ({source['steps'] / 1e6:g}e6 steps)" for name, source in sources.items()]
     rows = []
-    for key, label in ((each.name, each.title) for each in MEASURES.values() if each.averaged):
+    titles = {each.name: each.title for each in MEASURES.values() if each.averaged} | summary["measures"]
+    for key, label in titles.items():
         if key in part.means and (not part.species or part.means[key]["mean"] is not None):
             reported = [_reported(source.get(key)) for source in sources.values()]
             rows.append([label, *_interval(part.means[key]), *reported])

@@ -6,6 +6,7 @@ from hedon.config.field import OURS, section, setting
 from hedon.config.room import MAX_FOOD_KINDS, MAX_SPECIES
 from hedon.config.schema.arena import ArenaConfig
 from hedon.config.schema.food import FoodConfig
+from hedon.config.schema.measure import MAX_MEASURES, MeasureConfig
 from hedon.config.schema.obstacle import ObstacleConfig
 from hedon.config.schema.physics import PhysicsConfig
 from hedon.config.schema.species import ONLY, SpeciesConfig
@@ -13,6 +14,11 @@ from hedon.config.schema.world import WorldConfig
 
 PROVENANCE = ("name", "preset", "fidelity")
 """Fields that say where a config came from; they change no result."""
+
+
+def changes_worlds(path: str) -> bool:
+    """Whether a setting can change a world: all but where the config came from, and what is measured in its worlds."""
+    return path not in PROVENANCE and not path.startswith("measure.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,3 +38,4 @@ class Settings:
     food: dict[str, FoodConfig] = section(lambda: {"normal": FoodConfig()}, most=MAX_FOOD_KINDS)
     world: WorldConfig = section(WorldConfig)
     species: dict[str, SpeciesConfig] = section(lambda: {ONLY: SpeciesConfig()}, most=MAX_SPECIES)
+    measure: dict[str, MeasureConfig] = section(most=MAX_MEASURES, derived=True)
