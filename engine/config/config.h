@@ -108,6 +108,7 @@ struct SpeciesLayout {
   float max_force;
   float distance_sd;                      ///< of a child's place around its parent, along x and along y [u]
   FixedList<int32_t, MAX_TYPES> sees;     ///< types that rays meet, by channel, ascending
+  FixedList<int32_t, MAX_TYPES> looks;    ///< by type, the type that it looks like: itself, or another one
   FixedList<int32_t, MAX_TYPES> touches;  ///< types that it collides with and feels by touch, by channel, ascending
   FixedList<int32_t, MAX_TYPES> smells;   ///< types that it smells, by channel, ascending
   FixedList<float, MAX_FOOD_KINDS> eats_food;  ///< factor on the energy of each kind; 0: it does not eat this kind
@@ -128,14 +129,15 @@ struct SpeciesLayout {
   int32_t season_period;                      ///< steps of a year; 0: none
   FixedList<NeighborQuery, MAX_QUERIES> neighbors;
 
-  HEDON_FIELDS(SpeciesLayout, min_force, max_force, distance_sd, sees, touches, smells, eats_food, eats_species, gives,
-               needs, rules, genes, learning, sets, family, set_points, terms, observed, last, recorded, gate,
+  HEDON_FIELDS(SpeciesLayout, min_force, max_force, distance_sd, sees, looks, touches, smells, eats_food, eats_species,
+               gives, needs, rules, genes, learning, sets, family, set_points, terms, observed, last, recorded, gate,
                season_period, neighbors)
   static constexpr Limit TYPE = Limit::from(0, MAX_TYPES - 1), GENE = Limit::from(-1, MAX_GENES - 1),
                          YES = Limit::from(0, 1), FORCE = Limit::from(-MAX_FORCE, MAX_FORCE);
   static constexpr Limit LIMITS[] = {FORCE,
                                      FORCE,
                                      Limit::over(0, MAX_DISTANCE),
+                                     TYPE,
                                      TYPE,
                                      TYPE,
                                      TYPE,

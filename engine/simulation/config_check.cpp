@@ -188,6 +188,14 @@ void check_layout(Complaint& complaint, const std::string& path, const Config& c
   const SpeciesLayout& own = config.layout[s];
   const int32_t types = config.species.count + config.food.count + (config.obstacle.count > 0 ? 2 : 1);
   check_types(complaint, path + "sees", own.sees, types);
+  complaint.need(own.looks.count == types, path + "looks", own.looks.count, "one for each type");
+  for (int32_t t = 0; t < own.looks.count; ++t) {
+    const int32_t like = own.looks[t];
+    const bool good = like < types && (like == t || own.looks[like] == like);
+    complaint.need(good, item(path + "looks", t), like, "a type that looks like itself");
+    for (int32_t c = 0; c < own.sees.count; ++c)
+      complaint.need(like == t || own.sees[c] != t, item(path + "sees", c), t, "a type that looks like itself");
+  }
   check_types(complaint, path + "touches", own.touches, types);
   check_types(complaint, path + "smells", own.smells, config.species.count + config.food.count);
   const int32_t stores = 1 + config.species[s].store.count;

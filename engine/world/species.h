@@ -26,6 +26,13 @@ HEDON_FN Channels make_channels(const FixedList<int32_t, MAX_TYPES>& list, int32
   return channels;
 }
 
+/// Those of sight: what looks like another type has the channel of that one.
+HEDON_FN Channels make_sight(const SpeciesLayout& layout, int32_t types) {
+  Channels sight = make_channels(layout.sees, types);
+  for (int32_t type = 0; type < types; ++type) sight.of_type[type] = sight.of_type[layout.looks[type]];
+  return sight;
+}
+
 /// All in one piece of memory, without pointers: agents whose genes set some of it have one of their own.
 struct Species {
   SpeciesConfig config;
@@ -106,7 +113,7 @@ HEDON_FN Species make_species(const SpeciesConfig& config, const SpeciesLayout& 
   species.layout = layout;
   species.first_slot = first_slot;
   species.last_slot = first_slot + config.population.capacity;
-  species.sight = make_channels(layout.sees, types);
+  species.sight = make_sight(layout, types);
   species.touch = make_channels(layout.touches, types);
   species.scent = make_channels(layout.smells, types);
   species.learns = config.learning.policy == LearningPolicy::ppo;

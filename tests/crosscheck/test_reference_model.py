@@ -135,6 +135,7 @@ JUDGED_ELSEWHERE = {
     **{f"learning.{name}": NETWORKS for name in ("value_coef", "entropy_coef", "critic_target")},
     **{f"learning.{name}": NETWORKS for name in ("reward_scaling", "advantage_normalization")},
     "food.<kind>.color": "for figures alone",
+    "food.<kind>.looks_like": RAYS,
     "world.founders": "a digest that a run sets: tests/contract/test_founders.py",
     "world.networks": "a digest that a run sets: tests/contract/test_frozen.py",
 }

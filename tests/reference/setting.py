@@ -55,6 +55,7 @@ class Species:
             [each for each in every if each in solid or each in names or "*" in names]
             for names in (own.sensor.sees, own.body.collides)
         )
+        self.sees = [each for each in self.sees if each not in config.food or not config.food[each].looks_like]
         self.smells = [
             each for each in (*config.species, *config.food) if each in own.sensor.smells or "*" in own.sensor.smells
         ]

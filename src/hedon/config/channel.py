@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from hedon.config.schema.settings import Settings
 from hedon.config.schema.species import SpeciesConfig
 from hedon.config.schema.store import ENERGY
-from hedon.config.type import asked_for, chosen, diet, smelled
+from hedon.config.type import asked_for, chosen, diet, seen, smelled
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +161,7 @@ def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
     names: dict[str, Sequence[str | None]] = {
         "stores": tuple(species.stores),
         "meals": [name if name in eaten else None for name in (*config.food, *config.species)],
-        "sees": chosen(config, species.sensor.sees),
+        "sees": seen(config, species.sensor.sees),
         "smells": smells,
         "noses": [f"{name}_{nose}" for name in smells for nose in range(species.sensor.noses)],
         "touches": chosen(config, species.body.collides),

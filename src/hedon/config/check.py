@@ -110,7 +110,24 @@ def _kinds(check: Check, config: Settings) -> None:
             for name in table.keys() - set(known):
                 rule = "no species has such a store: there are " + ", ".join(known)
                 check.add(f"{path}.{what}.{name}", rule, nearest(name, known))
+        _look(check, config, kind)
         _placement(check, config.arena, food, f"{path}.placement")
+
+
+def _look(check: Check, config: Settings, kind: str) -> None:
+    other, path = config.food[kind].looks_like, f"food.{kind}.looks_like"
+    if not other:
+        return
+    known = [name for name in config.food if name != kind]
+    if other not in known:
+        check.add(
+            path, "must be another kind of food: there are " + (", ".join(known) or "none"), nearest(other, known)
+        )
+    elif config.food[other].looks_like:
+        check.add(path, f"{other} looks like {config.food[other].looks_like}: name a kind that looks like itself")
+    for name, species in config.species.items():
+        if kind in species.sensor.sees:
+            check.add(path, f"species.{name}.sensor.sees names {kind}, which nobody sees as itself: name {other}")
 
 
 def _placement(check: Check, arena: ArenaConfig, food: FoodConfig, path: str) -> None:

@@ -16,6 +16,9 @@ SCHEMA = "1"
 """The version of the schema of configs: which settings there are, and what they mean. A digest is of a config under it;
 complete files of other versions are refused."""
 
+LATER = (".looks_like",)
+"""How the paths end of settings that came after this schema: where they are off, digests are as without them."""
+
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 
 
@@ -85,13 +88,18 @@ class Fingerprint:
 
     def __init__(self, config: Settings) -> None:
         counted = (each for each in leaves(config) if changes_worlds(each[0]) and not each[0].endswith(".color"))
-        self._rows = {path: json.dumps([path, value]) for path, _, value in counted}
+        self._rows = {path: _row(path, value) for path, _, value in counted}
 
     def digest(self, values: Mapping[str, Any]) -> str:
         """The digest of the config with other values; see `digest`."""
-        changed = {path: json.dumps([path, value]) for path, value in values.items() if path in self._rows}
-        rows = ", ".join((self._rows | changed).values())
+        changed = {path: _row(path, value) for path, value in values.items() if path in self._rows}
+        rows = ", ".join(filter(None, (self._rows | changed).values()))
         return hashlib.sha256(f'{{"schema": {json.dumps(SCHEMA)}, "settings": [{rows}]}}'.encode()).hexdigest()
+
+
+def _row(path: str, value: Any) -> str:
+    """What a digest is made of, for one setting; empty where it came later and is off."""
+    return json.dumps([path, value]) if value or not path.endswith(LATER) else ""
 
 
 def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:

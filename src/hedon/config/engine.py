@@ -13,7 +13,7 @@ from hedon.config.schema.arena import outer_count, walls
 from hedon.config.schema.evolution import FAMILY_GENES, OF_ALL_GENES, GeneConfig
 from hedon.config.schema.life import distance_sd
 from hedon.config.schema.species import RULE_USES, SpeciesConfig
-from hedon.config.type import asked_for, diet, types
+from hedon.config.type import asked_for, diet, look, types
 
 if TYPE_CHECKING:
     import numpy as np
@@ -128,6 +128,7 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
     return force | {
         "distance_sd": distance_sd(config.arena, species.birth),
         "sees": [number[each] for each in layout.sees],
+        "looks": [number[look(config, each)] for each in types(config)],
         "touches": [number[each] for each in layout.touches],
         "smells": [number[each] for each in layout.smells],
         "eats_food": [eaten.get(each, 0.0) for each in config.food],

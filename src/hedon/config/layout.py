@@ -21,7 +21,7 @@ from hedon.config.schema.evolution import (
 from hedon.config.schema.settings import Settings
 from hedon.config.schema.species import SpeciesConfig
 from hedon.config.schema.store import ENERGY
-from hedon.config.type import chosen, diet, smelled
+from hedon.config.type import chosen, diet, seen, smelled
 from hedon.error import ArgumentError
 from hedon.text import brief
 
@@ -264,7 +264,7 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
     return SpeciesLayout(
         genes=tuple(made.genes),
         terms=tuple(made.terms),
-        sees=chosen(config, species.sensor.sees),
+        sees=seen(config, species.sensor.sees),
         touches=chosen(config, species.body.collides),
         smells=smelled(config, species.sensor.smells),
         stores=tuple(species.stores),

@@ -48,6 +48,16 @@ def chosen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
     return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
 
 
+def look(config: Settings, name: str) -> str:
+    """The type that agents see where one of this type is."""
+    return (config.food[name].looks_like or name) if name in config.food else name
+
+
+def seen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
+    """The types that a list of names stands for to rays: what looks like another type is not told apart."""
+    return tuple(name for name in chosen(config, names) if look(config, name) == name)
+
+
 def asked_for(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
     """The types that a query finds by a list of names, in order: species and kinds of food."""
     every = config.species if EVERYTHING in names else ()

@@ -42,6 +42,7 @@ CONFIG = load_config(
 OWN = "species.agent."
 WALLS = walls(CONFIG.arena).tolist()
 LEAVES = {path: setting for path, setting, _ in leaves(CONFIG)}
+del LEAVES["food.poison.looks_like"]  # its sight is paid for, so it has to look like itself
 OTHER: dict[str, Any] = {
     OWN + "body.collides": ("normal",),
     OWN + "sensor.sees": ("normal", "poison"),
@@ -53,10 +54,11 @@ OTHER: dict[str, Any] = {
     OWN + "reward.gate": "energy",
     OWN + "reward.pay.moved.channel": "effort",
     "arena.inner_walls": ((1.0, 1.0, 2.0, 2.0),),
+    "food.normal.looks_like": "poison",
     "food.normal.placement.centers": ((1.0, 1.0),),
     "food.poison.placement.centers": ((1.0, 1.0),),
 }
-"""Other values of settings that are lists."""
+"""Other values of settings that are lists or names."""
 
 
 def changed(config: Any, path: str, value: Any) -> Any:

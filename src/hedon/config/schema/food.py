@@ -84,6 +84,13 @@ class FoodConfig:
         ge=1,
         le=10_000,
     )
+    looks_like: str = setting(
+        "",
+        "another kind that agents see where this one is, by rays alone; empty: it looks like itself",
+        "",
+        OURS,
+        derived=True,
+    )
     color: str = setting("#3f8f4f", "color in figures; agents do not see it", "", OURS, form="#rrggbb")
     placement: PlacementConfig = section(PlacementConfig)
     gene: GeneConfig = section(GeneConfig, derived=True)
