@@ -47,6 +47,7 @@ def fill(folder: Path, seeds: int = SEEDS, rest: str | None = None) -> str:
                 "seed": seed,
                 "digest": "0",
                 "extinct": seed == 3 and lower > 0,
+                "survived": 400 if seed == 3 and lower > 0 else 512,
                 "alive_mean": of_seed[seed] - lower + float(rng.normal(0.0, 1.0)),
                 "w_action_mean": None if seed == 3 and lower > 0 else float(rng.normal()),
             }
@@ -91,7 +92,10 @@ def test_what_the_extinct_do_not_have_is_left_out_and_they_are_counted(tmp_path)
     place = fill(tmp_path)
     said = call("compare", place, "--by", "energy.basic_cost")
     content = json.loads((Path(place) / "compare" / "compare.json").read_text())
-    assert [row["died out"] for row in content["tables"]["extinct"]["rows"]] == [0, 2]
+    gone = content["tables"]["extinct"]
+    assert [row["died out"] for row in gone["rows"]] == [0, 2]
+    assert [row["mean steps survived"] for row in gone["rows"]] == [512, pytest.approx(512 - 112 / SEEDS)]
+    assert "by a log-rank test in which worlds exchange their conditions within equal settings" in gone["note"]
     measures = {row["measure"]: row for row in content["tables"]["contrast"]["rows"]}
     assert measures["mean of w_action"]["worlds"] == SEEDS - 1
     assert measures["share of worlds extinct"]["difference"] == pytest.approx(1 / SEEDS)

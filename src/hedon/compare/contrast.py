@@ -20,6 +20,7 @@ from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, st
 from hedon.report.answer import Answer, simple_answer
 from hedon.statistic.contrast import Contrast, independent_contrast, paired_contrast
 from hedon.statistic.correction import holm
+from hedon.statistic.extinction import log_rank
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.text import count
 
@@ -167,7 +168,7 @@ def compare_answer(
         known = [name for name in shown if first[name].count() and second[name].count()]
         shown = {name: shown[name] for name in known}
     found = compare(first, second, shown, held, paired=paired)
-    tables = [_contrasts(found, names, others, worlds.cautions), *_extinct(first, second, names)]
+    tables = [_contrasts(found, names, others, worlds.cautions), *_extinct(first, second, names, held)]
     content = {"source": worlds.name, "by": by, "between": list(levels), "also_differs": others}
     content |= {"steps": worlds.steps} if worlds.steps else {}
     intro = f"{by}: {names[1]} against {names[0]}"
@@ -213,12 +214,31 @@ def _contrasts(
     return make_table("contrast", f"{names[1]} against {names[0]}", rows, " ".join([note, *cautions]))
 
 
-def _extinct(first: pl.DataFrame, second: pl.DataFrame, names: Sequence[str]) -> list[ResultTable]:
+def _extinct(
+    first: pl.DataFrame, second: pl.DataFrame, names: Sequence[str], factors: Sequence[str]
+) -> list[ResultTable]:
+    """How many worlds of each condition died out, how long they lived, and whether that differs."""
     if "extinct" not in first.columns:
         return []
     pairs = zip(names, (first, second), strict=True)
     rows = [{"condition": name, "worlds": each.height, "died out": int(each["extinct"].sum())} for name, each in pairs]
-    return [make_table("extinct", "Worlds that died out", rows)]
+    known = [each for each in (first, second) if "survived" in each.columns]
+    if len(known) < 2 or not sum(row["died out"] for row in rows):
+        return [make_table("extinct", "Worlds that died out", rows)]
+    for row, each in zip(rows, known, strict=True):
+        row["mean steps survived"] = float(each["survived"].cast(pl.Float64).to_numpy().mean())
+    p = _survival_chance(known, factors)
+    note = f"p = {p:.3g}, by a log-rank test in which worlds exchange their conditions"
+    note += " within equal settings of all other factors." if factors else "."
+    return [make_table("extinct", "Worlds that died out", rows, note)]
+
+
+def _survival_chance(groups: Sequence[pl.DataFrame], factors: Sequence[str]) -> float:
+    """The p of the log-rank test for the worlds of two conditions."""
+    both = pl.concat([each.with_columns(first=pl.lit(i == 0)) for i, each in enumerate(groups)], how="diagonal_relaxed")
+    lived, ended, first = (both[name].to_numpy() for name in ("survived", "extinct", "first"))
+    settings = both.select(pl.struct(factors).rank("dense")).to_series().to_numpy() if factors else np.zeros(len(first))
+    return log_rank(lived.astype(np.float64), ended.astype(np.bool_), first, settings.astype(np.int64))
 
 
 def draw_contrasts(found: Sequence[Compared], by: str, names: Sequence[str]) -> Figure:

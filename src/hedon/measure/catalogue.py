@@ -74,6 +74,14 @@ MEASURES: Mapping[str, Measure] = {
             binary=True,
             usual=True,
         ),
+        Measure(
+            "survived",
+            "steps that the world lived",
+            lambda world: min(world.end_step, world.end_step if world.extinct_step is None else world.extinct_step),
+            AMOUNT,
+            "step at which the last agent died, or the last planned one [step]; its mean over worlds of equal length "
+            "is the restricted mean of their survival",
+        ),
         Measure("extinct_step", "step at which the last agent died, or null", lambda world: world.extinct_step),
         Measure("births", "children born", _sum_of("births"), AMOUNT),
         Measure("deaths", "agents that died", _sum_of("deaths"), AMOUNT),

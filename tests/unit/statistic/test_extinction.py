@@ -1,8 +1,10 @@
+import math
+
 import numpy as np
 import pytest
 from scipy import stats
 
-from hedon.statistic.extinction import extinct_share
+from hedon.statistic.extinction import extinct_share, log_rank
 
 
 def test_a_world_that_ends_early_is_censored() -> None:
@@ -49,3 +51,28 @@ def test_the_interval_covers_with_few_worlds_and_many_censored(share: float, cut
         found = extinct_share(np.minimum(gone, end), gone <= end, 1.0)
         hits += found.low <= share <= found.high
     assert hits / trials > 0.95 - 3 * np.sqrt(0.05 * 0.95 / trials)
+
+
+def test_the_log_rank_test_agrees_with_that_of_scipy_for_many_worlds() -> None:
+    rng = np.random.default_rng(4)
+    for rate in (1.0, 1.5):
+        lived = [rng.exponential(1.0, 150), rng.exponential(rate, 150)]
+        seen, ended = [np.minimum(each, 1.2) for each in lived], [each < 1.2 for each in lived]
+        known = [stats.CensoredData(uncensored=s[e], right=s[~e]) for s, e in zip(seen, ended, strict=True)]
+        first = np.repeat([True, False], 150)
+        p = log_rank(np.concatenate(seen), np.concatenate(ended), first, np.zeros(300, np.int64), 4000)
+        assert p == pytest.approx(stats.logrank(*known).pvalue, abs=0.02)
+
+
+def test_the_log_rank_test_compares_within_settings() -> None:
+    """All that differs is the setting, which is not spread evenly over the groups."""
+    lived, first = np.repeat([10.0, 90.0], 12), np.array([True] * 10 + [False] * 2 + [True] * 2 + [False] * 10)
+    ended, setting = np.ones(24, np.bool_), np.repeat([0, 1], 12)
+    assert log_rank(lived, ended, first, np.zeros(24, np.int64)) < 0.01
+    assert log_rank(lived, ended, first, setting) == 1.0
+
+
+def test_without_deaths_or_a_second_group_there_is_no_log_rank_test() -> None:
+    lived, none = np.arange(1.0, 7.0), np.zeros(6, np.int64)
+    assert math.isnan(log_rank(lived, np.zeros(6, np.bool_), lived > 3, none))
+    assert math.isnan(log_rank(lived, np.ones(6, np.bool_), lived > 0, none))
