@@ -79,6 +79,12 @@ def test_nothing_can_be_written(server, method):
     assert ask(server, f"/{server.token}/data/run.json", method=method)[0].status == 501
 
 
+def test_a_head_is_that_of_the_answer_without_its_content(server):
+    whole, head = (ask(server, f"/{server.token}/index.html", method=method) for method in ("GET", "HEAD"))
+    assert (head[0].status, head[1]) == (200, b"")
+    assert head[0].getheader("Content-Length") == whole[0].getheader("Content-Length") == str(len(whole[1]))
+
+
 def test_it_listens_on_this_machine_alone_and_forbids_what_a_page_does_not_need(server):
     assert server.server_address[0] == "127.0.0.1"
     policy = ask(server, f"/{server.token}/")[0].headers["Content-Security-Policy"]

@@ -13,6 +13,7 @@ import { Notice } from "./notice";
 import { Plots } from "./plots";
 import { recall, remember, switchTheme } from "./preference";
 import { castRays, type Ray } from "./rays";
+import { recordedSettings } from "./recorded";
 import { Replay } from "./replay";
 import { Settings } from "./settings";
 import { Tabs } from "./tabs";
@@ -237,7 +238,7 @@ export class App {
     this.twin.close();
     const view = former ? this.arena.view(former) : undefined;
     [this.source, this.chosen, this.frame, this.now] = [source, -1, undefined, source.first];
-    if (!source.live) by("settings").replaceChildren(element("p", { text: "Settings can be changed in a live world: choose one above." }));
+    if (source instanceof Replay) by("settings").replaceChildren(...recordedSettings(source.settings));
     this.colors = colorings(source);
     by("color").replaceChildren(...this.colors.map((each) => option(each.name, each.label)));
     this.paint(this.coloring?.name ?? "");

@@ -137,6 +137,8 @@ export class Plots {
 
   private markNow(chart: uPlot): void {
     const x = chart.valToPos(this.now, "x", true);
+    const { left, width } = chart.bbox;
+    if (!(x >= left && x <= left + width)) return; // it would cover the labels of the axis
     chart.ctx.fillStyle = styleColor("--mark");
     chart.ctx.fillRect(x - 1, chart.bbox.top, 2, chart.bbox.height);
   }

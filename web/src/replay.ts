@@ -72,6 +72,10 @@ export class Replay implements Source {
     return this.index.seeds;
   }
 
+  get settings(): RunIndex["settings"] {
+    return this.index.settings;
+  }
+
   get title(): string {
     return this.index.folder;
   }

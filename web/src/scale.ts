@@ -29,7 +29,7 @@ function ofLives(source: Source, measure: (life: Life) => number): number {
   return quantile(values, SHARE);
 }
 
-/** Some times the highest mean that there was, of all species together: an agent that has more is rare. */
+/** Some times the highest mean that there was, of all species together, or is, where a world has just begun: an agent that has more is rare. */
 function ofEnergy(source: Source, frame: Frame): number {
   const { layout, series } = source;
   const columns = layout.species.map((each) => ["energy_mean", "alive"].map((name) => series.get(columnOf(layout, each, name))) as [number[], number[]]);
@@ -37,8 +37,9 @@ function ofEnergy(source: Source, frame: Frame): number {
     const known = columns.filter(([mean, alive]) => mean[row]! * alive[row]! > 0);
     return known.reduce((sum, [mean, alive]) => sum + mean[row]! * alive[row]!, 0) / known.reduce((sum, [, alive]) => sum + alive[row]!, 0);
   };
-  const highest = series.step.reduce((most, _, row) => Math.max(most, mean(row) || 0), 0);
-  return Math.min(roundUp(highest > 0 ? ABOVE_MEAN * highest : quantile([...frame.energy], SHARE)), layout.energy_capacity);
+  const now = frame.energy.reduce((sum, each) => sum + each, 0) / Math.max(frame.energy.length, 1);
+  const highest = series.step.reduce((most, _, row) => Math.max(most, mean(row) || 0), series.step.length > 0 ? 0 : now);
+  return Math.min(roundUp(ABOVE_MEAN * highest), layout.energy_capacity);
 }
 
 /** What gives the ends of a scale from 0, or around 0, for a measure of lives; without a measure, for energy. */

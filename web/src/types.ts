@@ -149,5 +149,6 @@ export interface RunIndex {
   digests: string[];
   obstacles?: Place[][][]; // of each world
   layout: Layout;
+  settings: { base: string; changed: [path: string, value: string, base: string][]; all: [path: string, value: string, meaning: string][] };
   files: { agents: Part[]; population: Part[]; frames: Part[] };
 }

@@ -5,6 +5,10 @@ from typing import Any
 
 import polars as pl
 
+from hedon.config import Config
+from hedon.config.dump import file_leaves
+from hedon.config.load import changed_settings
+from hedon.config.problem import format_value
 from hedon.record.error import RecordError
 from hedon.record.folder import LIVING, TABLE_FOLDERS, part_paths
 from hedon.record.part import read_part
@@ -29,9 +33,10 @@ class RunIndex:
 
         Returns:
             `name`, `status`, `seeds`, `steps` (done, per world), `extinct` (step or None, per world), `frames` (steps
-            between two), `digests`, `obstacles` (corners of each, per world), `layout`, and `files`: for each table its
-            parts, each with `file` (relative to the run), `bytes` and, for frames, `worlds`: first and last step of
-            each world there, or None; or `damaged` where it cannot be read.
+            between two), `digests`, `obstacles` (corners of each, per world), `layout`, `settings` (`base`, `changed`
+            and `all`, as texts), and `files`: for each table its parts, each with `file` (relative to the run), `bytes`
+            and, for frames, `worlds`: first and last step of each world there, or None; or `damaged` where it cannot
+            be read.
 
         Raises:
             RecordError: It is not a run, or it holds a symbolic link.
@@ -51,6 +56,7 @@ class RunIndex:
             "digests": list(manifest.world_digests),
             "obstacles": list(manifest.obstacle_places),
             "layout": describe(config),
+            "settings": _settings(config),
             "files": {table: list(self._parts(run, table)) for table in TABLE_FOLDERS},
         }
 
@@ -93,3 +99,16 @@ def _spans(rows: pl.DataFrame, run: Run) -> list[Span]:
     ends = rows.group_by("world").agg(first=pl.col("step").min(), last=pl.col("step").max())
     found = {world: (first, last) for world, first, last in ends.iter_rows()}
     return [found.get(world) for world in range(len(run.manifest.seeds))]
+
+
+def _settings(config: Config) -> dict[str, Any]:
+    """The settings of a run as texts: of which preset, what differs from it, and all of them with their meanings."""
+    return {
+        "base": f"{config.preset} ({config.fidelity})",
+        "changed": [[path, _said(new), _said(old)] for path, old, new in changed_settings(config)],
+        "all": [[path, format_value(value), each.doc.meaning] for path, each, value in file_leaves(config)],
+    }
+
+
+def _said(value: Any) -> str:
+    return "absent" if value is None else format_value(value)

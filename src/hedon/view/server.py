@@ -84,6 +84,9 @@ class _Handler(BaseHTTPRequestHandler):
     server_version = "hedon"
     sys_version = ""
 
+    def do_HEAD(self) -> None:
+        self.do_GET()
+
     def do_GET(self) -> None:
         # A page elsewhere could let a name of its own lead to this machine; then the host is that name.
         server = cast(Server, self.server)
@@ -115,7 +118,8 @@ class _Handler(BaseHTTPRequestHandler):
         for name, value in {**HEADERS, "Content-Type": content_type, "Content-Length": str(len(content))}.items():
             self.send_header(name, value)
         self.end_headers()
-        self.wfile.write(content)
+        if self.command != "HEAD":
+            self.wfile.write(content)
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002
         """Prints nothing: a terminal is for people."""

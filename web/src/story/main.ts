@@ -1,6 +1,7 @@
 // Where the article begins: makes its scenes, plays those that are seen, and opens the places of links.
 import "./story.css";
 import { by, element } from "../element";
+import { recallTheme, switchTheme } from "../preference";
 import { chance } from "./chance";
 import { contest } from "./contest";
 import { creature } from "./creature";
@@ -24,8 +25,12 @@ async function begin(): Promise<void> {
   const { worlds } = (await answer.json()) as { worlds: Worlds };
   const seen = new IntersectionObserver((entries) => entries.forEach(see), { rootMargin: "-15% 0px" });
   for (const [name, make] of Object.entries(MAKERS)) {
-    const scene = (scenes[name] = make(by(name), worlds));
-    seen.observe(scene.stage?.host.querySelector(".view") ?? scene.section);
+    try {
+      const scene = (scenes[name] = make(by(name), worlds));
+      seen.observe(scene.stage?.host.querySelector(".view") ?? scene.section);
+    } catch (error) { // as where the browser has no graphics: the text and the other scenes stay
+      by(name).append(element("p", { class: "fault", text: `This scene cannot be shown: ${told(error)}.` }));
+    }
   }
   requestAnimationFrame(picture);
   window.addEventListener("hashchange", () => void openAddress().catch(complain));
@@ -87,9 +92,9 @@ function complain(error: unknown): void {
 
 by("notice").querySelector("button")!.addEventListener("click", () => (by("notice").hidden = true));
 
+recallTheme();
 by("theme").addEventListener("click", () => {
-  const dark = getComputedStyle(document.documentElement).colorScheme.startsWith("dark");
-  document.documentElement.dataset.theme = dark ? "light" : "dark";
+  switchTheme();
   for (const { section } of Object.values(scenes)) section.dispatchEvent(new CustomEvent("theme"));
 });
 

@@ -1,0 +1,71 @@
+"""What the article does where something is missing, and what it remembers."""
+
+import pytest
+from view_page import Watched, live_server, run_live, run_server, serving
+
+from hedon.view.story import PAGE
+
+pytest_plugins = ("view_fixture", "story_fixture")
+NO_GRAPHICS = """
+const inner = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+  return kind === "webgl2" ? null : inner.call(this, kind, ...rest);
+};
+"""
+
+
+def test_without_graphics_the_text_and_the_other_scenes_stay(story_site, browser):
+    page = browser.new_page()
+    page.add_init_script(NO_GRAPHICS)
+    Watched(page, story_site.link + PAGE).until("hedon.pictures > 2 && hedon.scenes.chance")
+    said = page.locator(".fault").all_inner_texts()
+    assert set(said) == {"This scene cannot be shown: this browser has no WebGL2."}
+    assert page.evaluate("Object.keys(hedon.scenes)") == ["chance"]
+    assert page.locator("#learning p").first.inner_text()
+    assert page.locator("#notice").is_hidden()
+    page.close()
+
+
+def test_the_article_remembers_its_theme(article, story_site):
+    watched = article("contest")
+    watched.page.locator("#theme").click()
+    assert watched.get("document.documentElement.dataset.theme") == "dark"
+    other = watched.page.context.new_page()
+    other.goto(story_site.link + PAGE)
+    assert other.evaluate("document.documentElement.dataset.theme") == "dark"
+    other.close()
+
+
+def test_the_scale_of_energy_follows_one_rule_from_the_first_step_on(watch):
+    with serving(live_server("baseline")) as server:
+        watched = watch(server.link)
+        scale = watched.page.locator("#legend .scale")
+        watched.until("hedon.frame && document.querySelector('#legend .scale')")
+        first = scale.inner_text()
+        run_live(watched, 320)
+        watched.get("(hedon.panelsDue = 0)")
+        watched.until("hedon.source.series.step.length > 0")
+        assert scale.inner_text() == first
+
+
+@pytest.mark.parametrize("step", [0, 2048])
+def test_no_plot_marks_a_moment_beside_it(run_folder, watch, step):
+    with serving(run_server(run_folder)) as server:
+        watched = watch(server.link)
+        watched.until("hedon.source.series.step.length > 1")
+        watched.get("hedon.tab('plots')")
+        watched.get("""(() => {
+          window.marks = [];
+          const inner = CanvasRenderingContext2D.prototype.fillRect;
+          CanvasRenderingContext2D.prototype.fillRect = function (x, y, width, height) {
+            if (width === 2 && this.canvas.closest('.plot')) window.marks.push(x);
+            return inner.call(this, x, y, width, height);
+          };
+        })()""")
+        watched.get(f"(hedon.play(false), hedon.seek({step}))")
+        watched.get("(hedon.panelsDue = 0)")
+        watched.until("hedon.pictures > 0")
+        low, high = watched.get("[hedon.plots.plots[0].chart.bbox.left, hedon.plots.plots[0].chart.bbox.width]")
+        marks = watched.get("new Promise((done) => setTimeout(() => done(window.marks), 600))")
+        assert all(low - 1 <= x <= low + high for x in marks)
+        assert bool(marks) == (step > 0)
