@@ -73,9 +73,10 @@ def test_intervals_cover_as_often_as_promised() -> None:
         fit = fit_factorial(design(CELLS, effects, 1.5, 2, rng), 3)
         covered += sum(effect.low <= TRUE[effect.factors] <= effect.high for effect in fit.effects)
         false_alarms += next(effect.p for effect in fit.effects if effect.factors == (0, 2)) < 0.05
-    # The seven effects of a trial share the estimate of the variance: bounds of some 4 standard errors.
-    assert covered / (7 * trials) == pytest.approx(0.95, abs=0.025)
-    assert false_alarms / trials == pytest.approx(0.05, abs=0.045)
+    # The seven effects of a trial share the estimates of the variances: bounds of some 4 standard errors. Each cell has
+    # a variance of its own, so with two worlds per cell the degrees of freedom are few, and intervals too wide.
+    assert 0.925 < covered / (7 * trials) < 0.99
+    assert false_alarms / trials < 0.095
 
 
 def test_two_cells_are_compared_by_welch() -> None:
