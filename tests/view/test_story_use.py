@@ -1,7 +1,7 @@
-"""What the article does where something is missing, and what it remembers."""
+"""What the article does where something is missing, what it remembers, and that fingers can use it."""
 
 import pytest
-from view_page import Watched, live_server, run_live, run_server, serving
+from view_page import Watched, live_server, run_live, run_server, serving, sized
 
 from hedon.view.story import PAGE
 
@@ -69,3 +69,12 @@ def test_no_plot_marks_a_moment_beside_it(run_folder, watch, step):
         marks = watched.get("new Promise((done) => setTimeout(() => done(window.marks), 600))")
         assert all(low - 1 <= x <= low + high for x in marks)
         assert bool(marks) == (step > 0)
+
+
+def test_what_fingers_touch_is_large_enough(article):
+    watched = article("creature", **sized(390))
+    small = watched.get("""[...document.querySelectorAll('button:not(.link), select, summary, input, .guess label')]
+      .filter((each) => each.offsetParent && !/checkbox|radio/.test(each.type))
+      .map((each) => [each.textContent || each.id || each.type, each.getBoundingClientRect().height])
+      .filter(([, height]) => height < 44)""")
+    assert small == []
