@@ -1,1 +1,1 @@
-"""Studies written with hedon: a paper of 2024 again, and its sequel on predators and prey."""
+"""Studies written with hedon: the paper of 2024, its sequel, claims of other authors, and our own."""

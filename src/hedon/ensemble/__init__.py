@@ -1,1 +1,1 @@
-"""Work in processes of its own, on one machine or on many."""
+"""Many worlds: which are needed, which exist, and how the rest is run, on one machine or on many."""

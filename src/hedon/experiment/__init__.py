@@ -1,1 +1,1 @@
-"""experiment"""
+"""The engine as Python objects, and the loop that advances it, writes records, and goes on from checkpoints."""

@@ -1,4 +1,4 @@
-"""What the studies share: figures of all worlds of their conditions, and a note of what is missing."""
+"""Differences between conditions, seed by seed, and the measures of each world that they are made of."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any

@@ -1,1 +1,1 @@
-"""Sweeps: many settings and seeds, on one machine or on many, and one table of what came out."""
+"""The file of a sweep: factors, their design, and the conditions that follow from them."""
