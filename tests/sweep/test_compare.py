@@ -18,8 +18,8 @@ from hedon.analysis.world.record import read_worlds
 from hedon.cli.main import app
 from hedon.compare.contrast import compare, compare_answer
 from hedon.compare.error import CompareError
-from hedon.compare.report import settings_table
 from hedon.compare.source import WorldTable
+from hedon.compare.sweep_answer import settings_table
 from hedon.ensemble.collect import collect
 from hedon.ensemble.plan import load_plan
 from hedon.ensemble.store import Store

@@ -163,7 +163,7 @@ def report(
       hedon sweep report sweeps/cost
       hedon sweep report sweeps/cost --only alive_mean,w_action_mean
     """
-    from hedon.compare.report import sweep_answer
+    from hedon.compare.sweep_answer import sweep_answer
     from hedon.ensemble.collect import collect as write_table
     from hedon.ensemble.plan import load_bases
     from hedon.measure.world_measure import titles_of
@@ -231,7 +231,7 @@ def _run_and_report(
 ) -> None:
     """Runs what is open, also what is added meanwhile, and prints the table. EnsembleError: a batch failed."""
     from hedon.cli.display.analysis import analysis_group
-    from hedon.compare.report import settings_table
+    from hedon.compare.sweep_answer import settings_table
     from hedon.ensemble.batches import batch_jobs
     from hedon.ensemble.collect import collect as write_table
     from hedon.ensemble.demand import parse_part

@@ -12,8 +12,8 @@ from hedon import ArgumentError, RunPlan, load_config, make, run
 from hedon.analysis import read_worlds
 from hedon.compare.contrast import compare_answer
 from hedon.compare.power import spreads
-from hedon.compare.report import settings_table
 from hedon.compare.source import read_table
+from hedon.compare.sweep_answer import settings_table
 from hedon.config import Config, ConfigError, digest
 from hedon.ensemble.collect import collect
 from hedon.ensemble.plan import load_bases, load_plan
