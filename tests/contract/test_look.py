@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from cuda_emulation import emulated as emulated
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
-from hedon import ConfigError, load_config
+from hedon import ConfigError, Simulation, load_config
 from hedon.config import digest
 from hedon.env import make
 
@@ -83,3 +84,16 @@ def test_a_look_counts_in_digests_only_where_there_is_one():
     # As it was before the setting.
     assert digest(load_config("baseline")) == "2087a81e05045bdcba911792a5019c4820a60a57988a3e577725d88b17329e83"
     assert digest(other.with_("food.decoy.looks_like", "")) == digest(plain)
+
+
+@pytest.mark.more
+def test_a_device_sees_decoys_as_the_processor_does(emulated):
+    config = load_config(
+        "baseline", overrides=[*QUICK, "food.decoy.gives.energy=0", "food.decoy.looks_like=normal", *PAID]
+    )
+    ends = []
+    for backend in ("avx2", emulated):
+        simulation = Simulation(config, seeds=[1, 2], backend=backend)
+        simulation.run(128)
+        ends.append([world.digest() for world in simulation.worlds])
+    assert ends[0] == ends[1]
