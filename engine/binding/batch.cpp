@@ -147,10 +147,10 @@ void PythonSimulation::tell(const BatchCall& call, Watched watched, const bool* 
   if (call.watch == 0) return;
   if (watched == Watched::AFTER_STEP && faulty() >= 0) watched = Watched::FAULT;
   char complaint[600] = "";
-  running_.store(false);  // what is written is read from the simulation
+  watcher_.store(std::this_thread::get_id());
   const int32_t wrong = reinterpret_cast<Watch>(static_cast<uintptr_t>(call.watch))(
       static_cast<int32_t>(watched), begins, seeds, complaint, sizeof complaint);
-  running_.store(true);
+  watcher_.store({});
   if (wrong != 0) throw EngineError(complaint);
 }
 

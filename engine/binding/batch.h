@@ -19,19 +19,18 @@ struct BatchCall {
   int64_t watch;    ///< address of a `Watch`; 0 for none
 };
 
-/// What a `Watch` is called for.
+/// When a `Watch` is called.
 enum class Watched : int32_t { BEFORE_STEP, AFTER_STEP, BEGIN, FAULT };
 
-/// Who writes records: called before and after each step of the worlds, before some of them begin again, and at a
-/// fault. The simulation can be read meanwhile. begins     of each world whether it is about to begin again, by its
-/// seed in `seeds`; null but for `BEGIN` complaint  gets a text with a zero at its end where the answer is not 0, which
-/// ends the call
+/// Called before and after each step of the worlds, before some of them begin again, and at a fault; it may read the
+/// simulation, and writes its records. For `BEGIN`, `begins` tells for each world whether it is about to begin again,
+/// by its seed in `seeds`; otherwise both are null. If it returns anything but 0, the call ends, and `complaint` has a
+/// text with a zero at its end.
 using Watch = int32_t (*)(int32_t watched, const bool* begins, const uint64_t* seeds, char* complaint, int64_t room);
 
 /// What a call reads: a row for each world.
 struct BatchIn {
-  const int32_t*
-      world;  ///< which world a row is of: rows are in the order of the worlds, or all of 0 if they are alike
+  const int32_t* world;      ///< of each row, in order; 0 for all rows if the worlds have begun alike
   const uint32_t* turn;      ///< of the state that is gone on from
   const uint32_t* key;       ///< (…, 2) two halves of the seed of a world that begins in this call
   const int32_t* ids;        ///< (…, slots) the agents of that state, -1 where nobody lives

@@ -152,7 +152,8 @@ Simulation& PythonSimulation::get() {
     throw EngineError(
         "this process was forked from the one that made the simulation, and the simulation's threads do not exist "
         "here: make a new simulation in this process");
-  if (running_.load()) throw EngineError("busy: the simulation is running in another thread");
+  if (running_.load() && watcher_.load() != std::this_thread::get_id())
+    throw EngineError("busy: the simulation is running in another thread");
   return *simulation_;
 }
 

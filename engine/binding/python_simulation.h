@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "binding/batch.h"
@@ -56,8 +57,7 @@ class PythonSimulation {
   /// See `hedon::step_batch`.
   std::string step_batch(const BatchCall& call, const BatchIn& in, const BatchOut& out, int64_t rows);
 
-  /// Calls the `Watch` of a call, if it has one; after a step that led to a fault, with that. EngineError: it
-  /// complains.
+  /// Calls the `Watch` of a call, if it has one. EngineError: what it complains of.
   void tell(const BatchCall& call, Watched watched, const bool* begins = nullptr, const uint64_t* seeds = nullptr);
 
   static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
@@ -102,6 +102,7 @@ class PythonSimulation {
 
   std::unique_ptr<Simulation> simulation_;
   std::atomic<bool> running_{false};
+  std::atomic<std::thread::id> watcher_{};  ///< the thread in which a `Watch` reads, while everybody else waits
   int64_t id_ = 0;
   std::vector<NamedRule> rules_;
   uint32_t turn_;  ///< counts calls of `step_batch`, from a number of its own, so that no other's states are taken

@@ -16,6 +16,7 @@ from hedon.ensemble.demand import Past
 from hedon.measure.catalogue import MEASURES, gene_mean
 from hedon.measure.measure import Measure
 from hedon.statistic.correction import holm
+from hedon.statistic.interval import LEVEL
 from hedon.statistic.law import t_above, t_quantile
 from hedon.statistic.minimum import FOR_INTERVAL
 
@@ -23,9 +24,9 @@ FATES = ("alive_mean", "mean_energy", "generation")
 """Measures of a world's end. Others sum over a world's whole history, which fresh worlds and futures do not share."""
 LINEAGES, NEUTRAL = "lineages", "neutral genes"
 DRAWS = 2000
-"""Permutations behind a chance."""
+"""Permutations per test."""
 UNKNOWN = (math.nan, math.nan, math.nan, math.nan)
-"""A ratio, its interval and its chance, where there are none."""
+"""A ratio, its interval and its p, if they cannot be computed."""
 Futures = tuple[Past, Sample]
 """A world at a step, and the worlds that go on from it."""
 
@@ -133,9 +134,10 @@ def diverged(fresh: Sample, futures: Sequence[Futures]) -> list[Divergence]:
     found = []
     for step in sorted({past.step for past, _ in futures}):
         mine = [sample for past, sample in futures if past.step == step]
-        for species, worlds in _by_species(fresh).items():
+        for species in fresh.demand.config.species:
+            worlds = fresh.of_species(species)
             before = f"{species}." if len(fresh.demand.config.species) > 1 else ""
-            groups = [_by_species(each).get(species, []) for each in mine]
+            groups = [each.of_species(species) for each in mine]
             generation = _generation_at(step, worlds)
             for name, measures in {**measures_of(worlds[0]), LINEAGES: [lineages_since(step)]}.items():
                 values = [_values(measures, group) for group in groups]
@@ -148,20 +150,13 @@ def overlaps(futures: Sequence[Futures]) -> list[Overlap]:
     """Whether the same agents have descendants in all futures, for each world that has futures."""
     found = []
     for past, sample in futures:
-        for species, worlds in _by_species(sample).items():
-            shares = [descent_shares(world, past.step)["share"].to_numpy() for world in worlds]
+        for species in sample.demand.config.species:
+            shares = [descent_shares(world, past.step)["share"].to_numpy() for world in sample.of_species(species)]
             living = [each for each in shares if each.sum() > 0]
             if len(living) > 1:
                 found.append(overlap(past.seed, past.step, species, np.stack(living)))
     corrected = holm([each.p for each in found])
     return [replace(each, p_holm=p) for each, p in zip(found, corrected, strict=True)]
-
-
-def _by_species(sample: Sample) -> dict[str, list[WorldRecord]]:
-    found: dict[str, list[WorldRecord]] = {}
-    for world in sample.worlds:
-        found.setdefault(world.species, []).append(world)
-    return found
 
 
 def _generation_at(step: int, worlds: Sequence[WorldRecord]) -> float:
@@ -217,7 +212,7 @@ def distance_ratio(groups: Sequence[Floats], fresh: Floats) -> tuple[float, floa
     freedom = sum(len(group) - 1 for group in groups)
     degrees = (inner + outer) ** 2 / (inner**2 / freedom + outer**2 / (len(fresh) - 1))
     value, error = math.log(apart / fresh_apart), math.sqrt(inner + outer)
-    reach = t_quantile(0.975, degrees) * error
+    reach = t_quantile(0.5 * (1.0 + LEVEL), degrees) * error
     bounds = (math.exp(value - reach), math.exp(value + reach))
     return math.exp(value), *bounds, 2.0 * t_above(abs(value) / error, degrees)
 

@@ -211,8 +211,8 @@ class RunRecord:
             return
         if len(worlds) == len(self.worlds):
             self.close()
-        for world in self._recorder.worlds[:] if len(worlds) < len(self.worlds) else ():
-            if world in worlds:
+        else:
+            for world in worlds:
                 self._forget(world)
                 self._recorder.leave(world)
         self.worlds = [world for world in self.worlds if world not in worlds]

@@ -371,8 +371,8 @@ class VectorEnv(Cloned):
     def _told(self) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """What every step returns: arrays that stay."""
         info = {name: self._of(name) for name in ("alive", "born", "births", "deaths", "meals")}
-        told = tuple(self._of(name) for name in ("observations", "rewards", "terminated", "truncated"))
-        return *told, {"agent_id": self._of("ids"), **info}  # type: ignore[return-value]
+        seen, paid, died, cut = map(self._of, ("observations", "rewards", "terminated", "truncated"))
+        return seen, paid, died, cut, {"agent_id": self._of("ids"), **info}
 
     def _of(self, name: str) -> Any:
         """An array of the only driven species, or of each by its name."""
