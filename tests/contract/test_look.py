@@ -5,7 +5,8 @@ import pytest
 from cuda_emulation import emulated as emulated
 from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scene
 
-from hedon import ConfigError, Simulation, load_config
+from hedon import ConfigError, RunPlan, Simulation, load_config, resume, run
+from hedon.check import check_run
 from hedon.config import digest
 from hedon.env import make
 
@@ -67,7 +68,7 @@ def test_who_eats_a_decoy_gets_what_it_gives_and_is_paid_for_the_meal():
         (("food.decoy.looks_like=nomal",), "must be another kind of food: there are normal.*did you mean normal"),
         (("food.decoy.looks_like=decoy",), "must be another kind of food: there are normal"),
         (("food.normal.looks_like=decoy",), "decoy looks like normal: name a kind that looks like itself"),
-        (('sensor.sees=["decoy"]',), "sensor.sees names decoy, which nobody sees as itself: name normal"),
+        (('sensor.sees=["decoy"]',), "sensor.sees names decoy, which no species sees as itself: name normal"),
         (("reward.pay.see_decoy.coef=1",), "there is no channel 'see_decoy'"),
     ],
 )
@@ -84,6 +85,16 @@ def test_a_look_counts_in_digests_only_where_there_is_one():
     # As it was before the setting.
     assert digest(load_config("baseline")) == "2087a81e05045bdcba911792a5019c4820a60a57988a3e577725d88b17329e83"
     assert digest(other.with_("food.decoy.looks_like", "")) == digest(plain)
+
+
+def test_a_run_from_before_the_setting_can_be_read_and_resumed(tmp_path):
+    run(RunPlan(load_config("baseline", overrides=QUICK), (1,), 64, tmp_path / "run"))
+    file = tmp_path / "run" / "config.toml"
+    lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+    file.write_text("".join(line for line in lines if not line.startswith("looks_like")), encoding="utf-8")
+    assert len(lines) > len(file.read_text(encoding="utf-8").splitlines())
+    assert resume(tmp_path / "run", steps=128).status == "finished"
+    assert check_run(tmp_path / "run").findings == ()
 
 
 @pytest.mark.more

@@ -127,7 +127,7 @@ def _look(check: Check, config: Settings, kind: str) -> None:
         check.add(path, f"{other} looks like {config.food[other].looks_like}: name a kind that looks like itself")
     for name, species in config.species.items():
         if kind in species.sensor.sees:
-            check.add(path, f"species.{name}.sensor.sees names {kind}, which nobody sees as itself: name {other}")
+            check.add(path, f"species.{name}.sensor.sees names {kind}, which no species sees as itself: name {other}")
 
 
 def _placement(check: Check, arena: ArenaConfig, food: FoodConfig, path: str) -> None:

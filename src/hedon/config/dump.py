@@ -17,7 +17,8 @@ SCHEMA = "1"
 complete files of other versions are refused."""
 
 LATER = (".looks_like",)
-"""How the paths end of settings that came after this schema: where they are off, digests are as without them."""
+"""How the paths of settings end that were added to this schema. If one is off, digests are as without it, and complete
+files may lack it: runs from before can be read and resumed."""
 
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 

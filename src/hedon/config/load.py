@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hedon.config.config import Config
-from hedon.config.dump import SCHEMA, diff, digest
+from hedon.config.dump import LATER, SCHEMA, diff, digest
 from hedon.config.field import leaves, value_at
 from hedon.config.layer import (
     Table,
@@ -264,7 +264,7 @@ def _require_complete(config: Config, tables: Table, origin: str) -> None:
     problems = [
         Problem(path, f"is missing in a file that says it is complete; {setting.allowed}")
         for path, setting, _ in leaves(config)
-        if path not in PROVENANCE and not _says(tables, path)
+        if path not in PROVENANCE and not path.endswith(LATER) and not _says(tables, path)
     ]
     if problems:
         raise ConfigError(origin, folded(problems, tuple(config.species)))
