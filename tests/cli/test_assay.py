@@ -278,6 +278,20 @@ def test_futures_that_part_late_end_nearer_than_fresh_worlds(folder: Path, past:
 
 
 @pytest.mark.more
+def test_futures_that_are_too_short_are_continued(folder: Path, past: Path) -> None:
+    words = ("contingency", "past", "--of", "2", "--steps", "960", "--seeds", "101-102", "--fresh", "201")
+    assert call(folder, *words, "--out", "at once").returncode == 0
+    branch = ("branch", "past", "--of", "2", "--seeds", "101-102", "--steps", "928")
+    assert hedon(*branch, "--out", "in two/seed-2-at-896", cwd=folder).returncode == 0
+    answer = call(folder, *words, "--out", "in two")
+    assert answer.returncode == 0, answer.stderr
+    assert "continue in two/seed-2-at-896: 2 worlds to 960 steps" in answer.stdout
+    once, two = (json.loads((folder / name / "contingency.json").read_text()) for name in ("at once", "in two"))
+    assert once["tables"] == two["tables"]
+    assert [run["world_digests"] for run in once["runs"]] == [run["world_digests"] for run in two["runs"]]
+
+
+@pytest.mark.more
 def test_comparisons_say_which_worlds_share_a_past(folder: Path, past: Path) -> None:
     made = hedon("branch", "past", "--of", "1", "--seeds", "21-26", "--steps", "960", "--out", "futures", cwd=folder)
     assert made.returncode == 0, made.stderr
