@@ -229,7 +229,7 @@ def stability(
 @with_options(ContingencyOptions)
 def contingency(
     runs: Annotated[
-        list[str], typer.Argument(metavar="RUN[@STEP]…", help="Runs, each at its end or at one of its checkpoints.")
+        list[str], typer.Argument(metavar="RUN[@STEP]", help="Runs, each at its end or at one of its checkpoints.")
     ],
     of: Annotated[
         str | None, typer.Option(metavar="SEEDS", help="The worlds that have futures; by default all of the runs.")
@@ -242,10 +242,11 @@ def contingency(
 ) -> None:
     """Replay the tape: was the outcome settled, or left to chance?
 
-    Each world of the runs has several futures, one for each of --seeds, and as many worlds begin afresh. If futures of
-    one world end as far apart as fresh worlds do, nothing was settled when they parted. Prints the ratio of both
-    distances for weights, numbers and lineages, with intervals, and whether the same agents have descendants in all
-    futures. --steps is the total, the past included. Ctrl-C ends it, and the same command goes on.
+    Each world of the runs gets several futures, one for each of --seeds, and the worlds of --fresh start from the
+    beginning. If futures of one world end as far apart as fresh worlds do, nothing was settled when they parted. Prints
+    the ratio of both distances for weights, numbers and lineages, with intervals, and whether the same agents have
+    descendants in all futures. --steps is the total, including the past. To interrupt it, press Ctrl-C; the same
+    command continues. A run keeps its two newest checkpoints.
 
     \b
     Examples:
