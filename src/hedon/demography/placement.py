@@ -2,13 +2,17 @@
 
 from collections.abc import Sequence
 from functools import cache
+from typing import Any
 
 import numpy as np
+from lazy_loader import load
 from numpy.typing import NDArray
 
 from hedon.config import Config
 from hedon.config.schema.arena import ArenaConfig, outline, walls
 from hedon.config.schema.life import distance_sd
+
+spatial: Any = load("scipy.spatial", suppress_warning=True)
 
 SCENES = 12
 """Random scenes per number of agents; each is tried with every agent as a parent."""
@@ -46,11 +50,8 @@ def is_free(config: Config, radius: float, places: Floats, agents: Floats, foods
     free = is_within_walls(config, radius, places)
     for others, reach in ((agents, 2 * radius), (foods, radius + config.world.food_radius)):
         if len(others):
-            apart, along_y = (np.subtract.outer(places[:, i], others[:, i]) for i in (0, 1))
-            apart *= apart
-            along_y *= along_y
-            apart += along_y
-            free &= apart.min(axis=1) >= reach**2
+            nearest, _ = spatial.KDTree(others).query(places[free], distance_upper_bound=reach)
+            free[free] = np.isinf(nearest)
     return free
 
 

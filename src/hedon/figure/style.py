@@ -15,7 +15,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
@@ -149,6 +148,8 @@ def svg_bytes(figure: Figure) -> bytes:
 
 def pdf_bytes(figure: Figure) -> bytes:
     """A figure as PDF with its fonts embedded as TrueType, which publishers ask for; the same bytes each time."""
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf  # loads fontTools, which few reports need
+
     buffer = io.BytesIO()
     with styled():
         mpl.rcParams["pdf.fonttype"] = 42

@@ -49,7 +49,7 @@ class Condition:
     def is_of(self, world: WorldRecord) -> bool:
         """Whether a world has these settings and nothing else is changed, and is of the species that is meant."""
         own = choose_species(self.species or None, self.config(world.config.fidelity))
-        return world.species == own and digest(world.config) == _digest(self, world.config.fidelity)
+        return world.species == own and world.settings == _digest(self, world.config.fidelity)
 
 
 @cache

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy import stats
 
 from hedon.statistic.survival import exposure_mean, restricted_mean, survival_curve
 
@@ -26,6 +27,22 @@ def test_greenwood_on_the_log_log_scale() -> None:
     error = np.sqrt(np.sum(d / (n * (n - d)))) / abs(np.log(share))
     for bound, sign in ((curve.low, 1), (curve.high, -1)):
         assert bound[2] == pytest.approx(share ** np.exp(sign * 1.959964 * error), rel=1e-6)
+
+
+@pytest.mark.filterwarnings("ignore:The confidence interval is undefined")  # where nobody is left
+@pytest.mark.parametrize("shown", [1.0, 0.6, 0.1])
+def test_curve_and_interval_are_those_of_scipy(shown: float) -> None:
+    rng = np.random.default_rng(3)
+    duration, died = rng.integers(1, 60, 300).astype(np.float64), rng.uniform(size=300) < shown
+    curve = survival_curve(duration, died, 0.9)
+    fitted = stats.ecdf(stats.CensoredData(uncensored=duration[died], right=duration[~died])).sf
+    whole = curve.at_risk > curve.deaths
+    bounds = fitted.confidence_interval(0.9, method="log-log")
+    at = np.searchsorted(fitted.quantiles, curve.age)
+    assert np.isnan(curve.low[~whole]).all()
+    assert np.isnan(curve.high[~whole]).all()
+    for ours, theirs in ((curve.share, fitted), (curve.low, bounds.low), (curve.high, bounds.high)):
+        np.testing.assert_allclose(ours[whole], theirs.probabilities[at][whole], rtol=1e-12)
 
 
 def test_without_censoring_it_is_the_empirical_distribution() -> None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from lazy_loader import load
+import polars as pl
 from numpy.typing import NDArray
 from scipy import special
 
@@ -21,8 +21,6 @@ from hedon.analysis.descent.walk import is_mutated, mutation_law
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.bootstrap import REPLICATES, percentile_interval, resampled_sums
 from hedon.statistic.law import normal_above
-
-stats: Any = load("scipy.stats", suppress_warning=True)
 
 OUTCOMES = ("food", "lifespan", "children")
 SCALES = ("clipped", "rank")
@@ -124,7 +122,7 @@ def mutation_effects(
 def _scaled(change: Floats, scale: str) -> Floats:
     if scale == "clipped":
         return np.clip(change, -CLIP, CLIP)
-    rank = stats.rankdata(change, axis=0)
+    rank = pl.from_numpy(change).select(pl.all().rank("average")).to_numpy()
     return np.asarray(special.ndtri((rank - 0.5) / len(change)), np.float64)
 
 

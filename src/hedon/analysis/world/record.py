@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import polars as pl
 
 from hedon.analysis.world.population import extinct_step
 from hedon.analysis.world.species import Kind, by_species, kinds
-from hedon.config import Config, flatten
+from hedon.config import Config, digest, flatten
 from hedon.config.gene import gene_of
 from hedon.config.layout import Gene
 from hedon.config.problem import format_value
@@ -66,6 +67,11 @@ class WorldRecord:
     first_step: int = 0
     planned_step: int = 0
     hunts: bool = False
+
+    @cached_property
+    def settings(self) -> str:
+        """The fingerprint of its settings: that of its config."""
+        return digest(self.config)
 
     @property
     def end_step(self) -> int:
