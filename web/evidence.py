@@ -1,4 +1,4 @@
-"""Takes the numbers of the article's scenes 5 and 6 from the committed results; as a program, writes them again."""
+"""Takes the numbers of the article's scene 6 from the committed results; as a program, writes them again."""
 
 import csv
 import json
@@ -10,42 +10,10 @@ import polars as pl
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "docs" / "results"
 FILE = ROOT / "web" / "src" / "story" / "evidence.json"
-COURSE = "start/tables/course.parquet"
-START = "start/tables/start.csv"
 SURFACE = "landscape/baseline/tables/smooth.parquet"
 DRIFT = "full/tables/drift_world.csv"
 SIDE = 21
 """Points of the map along each weight."""
-
-
-def course() -> dict[str, Any]:
-    """Mean weights over 512,000 steps from food 5 and action 5, five worlds, and where neutral genes from 5 stay.
-
-    Those are drawn along the pedigrees of these worlds, and begin as the weights do; p is of the same comparison. The
-    16 neutral genes that the worlds have begin at 0, so they are no measure of it: weights have limits, and 5 is nearer
-    to one of them.
-    """
-    rows = pl.read_parquet(RESULTS / COURSE)
-    genes = {name: own.sort("step") for (name,), own in rows.group_by("gene")}
-    with (RESULTS / START).open(newline="") as file:
-        p = {row["gene"]: round(float(row["p"]), 5) for row in csv.DictReader(file) if row["p"]}
-
-    def column(gene: str, name: str) -> list[float]:
-        return [round(value, 3) for value in genes[gene][name]]
-
-    chance = {bound: column("action", f"drift_{bound}") for bound in ("low", "high")}
-    if chance != {bound: column("normal", f"drift_{bound}") for bound in chance}:
-        raise ValueError(f"{COURSE}: the two weights do not begin alike, so they need a band each")
-
-    return {
-        "source": f"docs/results/{COURSE}",
-        "command": "hedon run baseline --seeds 1-5 --steps 512000 --set genome.neutral_count=16 "
-        "--set genome.initial_mean_food=5 --set genome.initial_mean_action=5",
-        "step": genes["action"]["step"].to_list(),
-        "meal": {"mean": column("normal", "mean"), "p": p["normal"]},
-        "moving": {"mean": column("action", "mean"), "p": p["action"]},
-        "chance": chance,
-    }
 
 
 def surface() -> dict[str, Any]:
@@ -76,7 +44,7 @@ def ends() -> dict[str, Any]:
 
 def evidence() -> dict[str, Any]:
     """All of it."""
-    return {"course": course(), "surface": surface(), "ends": ends()}
+    return {"surface": surface(), "ends": ends()}
 
 
 def text() -> str:

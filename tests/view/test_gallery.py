@@ -137,11 +137,10 @@ def test_each_place_of_the_gallery_has_its_picture(name, server, watch):
 def test_the_exercises_have_places_that_exist_and_a_data_sheet():
     text = (TEACHING / "README.md").read_text()
     places = [dict(parse_qsl(address)) for address in re.findall(r"`#(scene=[^`]+)`", text)]
-    assert {place["scene"] for place in places} >= {"creature", "family", "contest", "chance"}
+    assert {place["scene"] for place in places} >= {"creature", "family", "contest", "evolve"}
     for place in places:
         settings = [f"{path}={value}" for path, value in place.items() if "." in path]
-        if place["scene"] != "chance":
-            load_config(SCENES / f"{place['scene']}.toml", overrides=settings)
+        load_config(SCENES / f"{place['scene']}.toml", overrides=settings)
         assert set(place) - {"scene", "seed", "step"} == {setting.partition("=")[0] for setting in settings}
     for part in ("**Misconception**", "**Before**", "**Task**", "**After**", "**For the teacher**"):
         assert text.count(part) == 3
@@ -154,7 +153,9 @@ def test_the_exercises_have_places_that_exist_and_a_data_sheet():
 
 def test_the_exercises_name_what_the_article_has():
     """Sliders and buttons are in italics; a pair must find them."""
-    page = "".join((STORY / f"{name}.html").read_text() for name in ("creature", "learning", "family", "contest"))
+    page = "".join(
+        (STORY / f"{name}.html").read_text() for name in ("creature", "learning", "family", "evolve", "contest")
+    )
     buttons = set(re.findall(r"<button[^>]*>([^<]+)", page))
     sliders = {name.strip() for name in re.findall(r"<label>([^<]+)<input", page)}
     text = " ".join((TEACHING / "README.md").read_text().split())

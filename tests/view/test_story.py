@@ -227,5 +227,5 @@ def test_a_wrong_link_says_what_is_wrong(article):
     other.until("!document.querySelector('#notice').hidden")
     box = notice.bounding_box()
     assert 0 <= box["y"] < other.page.viewport_size["height"] - box["height"], "it is seen from where the reader is"
-    other.get("(location.hash = '#scene=chance')")
+    other.get("(location.hash = '#scene=sandbox')")
     other.until("document.querySelector('#notice').hidden")

@@ -1,11 +1,10 @@
-"""What a reader does in the article's last scenes, by script: the contest, the guess that is drawn, and the sandbox."""
+"""What a reader does in the article's last scenes, by script: the contest and the sandbox."""
 
 import re
 
 import numpy as np
 import pytest
 from story_page import address_of, native, opened, run_to, set_knob, stage
-from view_page import sized
 
 from hedon import load_config
 from hedon.view.story import SCENES
@@ -178,74 +177,6 @@ def test_bad_feelings_lose_to_evolution(article):
     watched.until("!document.querySelector('#contest-map').hidden")
     same = native(watched, "contest", "contest", 20480, *(f"{path}={value}" for path, value in BAD.items()))
     assert watched.get(f"{stage('contest')}.live.digest()") == same.digest()
-
-
-ANSWER = "document.querySelector('#chance-answer').textContent"
-
-
-def test_a_guess_is_drawn_before_the_answer_by_pointer_and_by_keys(article):
-    watched = article("chance")
-    plot = watched.page.locator("#chance-plot")
-    assert watched.page.locator("#chance-real").is_disabled()
-    box = plot.bounding_box()
-    watched.page.mouse.move(box["x"] + 50, box["y"] + 100)
-    watched.page.mouse.down()
-    watched.page.mouse.move(box["x"] + box["width"] - 11, box["y"] + 200, steps=10)
-    watched.page.mouse.up()
-    watched.until("!document.querySelector('#chance-real').disabled")
-    address = watched.get("new URL(document.querySelector('#chance-link').href).hash")
-    watched.page.locator("#chance-real").click()
-    watched.until(f"{ANSWER}.includes('ended at 0.5')")
-    watched.page.locator("#chance-drift").click()
-    watched.until(f"{ANSWER}.includes('Of 100 genes that do nothing, some 2 go so far, up or down (p = 0.02)')")
-    watched.page.locator("#chance-link").click()
-    watched.until("document.querySelector('#chance-link').textContent === 'link copied'")
-    other = article("chance", address)
-    other.until("!document.querySelector('#chance-real').disabled")
-    other.page.locator("#chance-reset").click()
-    other.page.locator("#chance-plot").focus()
-    for _ in range(51):
-        other.page.keyboard.press("ArrowRight")
-    other.until("!document.querySelector('#chance-real').disabled")
-
-
-def test_a_finger_draws_scrolls_over_the_result_and_finds_the_buttons_below(article):
-    watched = article("chance", **sized(390))
-    plot, show = watched.page.locator("#chance-plot"), watched.page.locator("#chance-real")
-    watched.get("document.querySelector('#chance-plot').scrollIntoView({ block: 'center', behavior: 'instant' })")
-    box = plot.bounding_box()
-    assert box["y"] + box["height"] < show.bounding_box()["y"] < box["y"] + box["height"] + 60
-    fingers = watched.page.context.new_cdp_session(watched.page)
-    level = box["y"] + 100
-
-    def touch(kind, *places):
-        points = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(places)]
-        fingers.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
-
-    touch("Start", (box["x"] + 50, level))
-    touch("Move", (box["x"] + 150, level))
-    touch("Start", (box["x"] + 150, level), (box["x"] + 250, level + 120))
-    touch("Move", (box["x"] + 150, level), (box["x"] + 260, level + 120))
-    touch("Move", (box["x"] + box["width"] - 10, level), (box["x"] + 260, level + 120))
-    touch("End")
-    watched.until("!document.querySelector('#chance-real').disabled")
-    link = "document.querySelector('#chance-link').href"
-    guess = watched.get(link)
-    (values,) = (each.split("_") for each in re.findall(r"guess=([^&]+)", guess))
-    assert len(set(values[1:])) == 1, "the second finger draws nothing"
-    show.click()
-    watched.until(f"{ANSWER}.includes('ended at 0.5')")
-    watched.get("document.querySelector('#chance-plot').scrollIntoView({ block: 'center', behavior: 'instant' })")
-    before, box = watched.get("scrollY"), plot.bounding_box()
-    touch("Start", (box["x"] + 200, box["y"] + 200))
-    for moved in range(10, 101, 10):
-        touch("Move", (box["x"] + 200, box["y"] + 200 - moved))
-    touch("End")
-    watched.until(f"scrollY > {before} + 40")
-    assert watched.get(link) == guess, "it stays as it was drawn"
-    assert "ended at 0.5" in watched.get(ANSWER)
-    watched.page.locator("#chance-reset").click()
-    watched.until(f"{ANSWER} === 'Draw first.'")
 
 
 @pytest.mark.parametrize(

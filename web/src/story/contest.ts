@@ -1,4 +1,4 @@
-// Scene 5: the reader's feelings against evolution's, in one arena; how many worlds of several each wins.
+// Scene 6: the reader's feelings against evolution's, in one arena; how many worlds of several each wins.
 import type { Coloring } from "../color";
 import { element, show, styleColor } from "../element";
 import { Chart } from "./chart";

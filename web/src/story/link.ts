@@ -22,7 +22,6 @@ const FORMS: Record<string, RegExp> = {
   steer: /^([.fblrqe]\d{1,7})*$/,
   agent: WHOLE,
   world: /^/,
-  gene: /^(meal|moving)$/,
   guess: /^-?\d+(\.\d+)?(_-?\d+(\.\d+)?){10}$/,
 };
 

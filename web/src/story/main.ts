@@ -2,11 +2,12 @@
 import "./story.css";
 import { by, element } from "../element";
 import { recallTheme, switchTheme } from "../preference";
-import { chance } from "./chance";
 import { contest } from "./contest";
 import { creature } from "./creature";
 import evidence from "./evidence.json";
+import { evolve } from "./evolve";
 import { family } from "./family";
+import { hero } from "./hero";
 import { learning } from "./learning";
 import { life } from "./life";
 import { type Place, placeOf } from "./link";
@@ -14,7 +15,7 @@ import { sandbox } from "./sandbox";
 import type { Scene, Worlds } from "./scene";
 import type { Stage } from "./stage";
 
-const MAKERS: Record<string, (section: HTMLElement, worlds: Worlds) => Scene> = { creature, learning, life, family, contest, chance, sandbox };
+const MAKERS: Record<string, (section: HTMLElement, worlds: Worlds) => Scene> = { creature, learning, life, family, evolve, contest, sandbox };
 const scenes: Record<string, Scene> = {};
 const story = { scenes, pictures: 0, opened: "" };
 Object.assign(window, { hedon: story }); // for a curious person's console, and for tests
@@ -102,4 +103,16 @@ for (const { source, command } of Object.values(evidence)) by("source-list").app
 
 document.addEventListener("visibilitychange", () => Object.values(scenes).forEach(({ stage }) => stage?.unseen()));
 
+/** The recording at the top; without it the picture stays, and the article too. */
+function open(): void {
+  const fault = by("hero-fault");
+  fault.hidden = true;
+  hero().catch((error) => {
+    fault.querySelector("span")!.textContent = `The recording cannot be played: ${told(error)}.`;
+    fault.hidden = false;
+  });
+}
+by("hero-fault").querySelector("button")!.addEventListener("click", open);
+
+open();
 begin().catch(complain);
