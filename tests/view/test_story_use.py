@@ -1,5 +1,7 @@
 """What the article does where something is missing, what it remembers, and that fingers can use it."""
 
+import time
+
 import pytest
 from view_page import Watched, live_server, run_live, run_server, serving, sized
 
@@ -23,6 +25,27 @@ def test_without_graphics_the_text_and_the_recording_stay(story_site, browser):
     assert page.evaluate("Object.keys(hedon.scenes)") == []
     assert page.locator("#learning p").first.inner_text()
     assert page.locator("#notice").is_hidden()
+    page.close()
+
+
+def test_a_world_that_cannot_run_says_so_in_its_arena_and_can_be_tried_again(story_site, browser):
+    page = browser.new_page()
+    page.route("**/*.wasm", lambda route: route.abort())
+    page.goto(f"{story_site.link}{PAGE}")
+    page.wait_for_timeout(500)
+    page.locator("#family canvas.world").scroll_into_view_if_needed()
+    fault = page.locator("#family .fault")
+    fault.wait_for(timeout=60_000)
+    assert fault.inner_text().startswith("This world stopped: ")
+    assert page.locator("#family .clock").inner_text() == "step 0"
+    page.unroute("**/*.wasm")
+    fault.get_by_role("button", name="Try again").click()
+    page.wait_for_selector("#family .fault", state="hidden")
+    ready = "hedon.scenes.family.stage.live.ready && hedon.scenes.family.stage.live.last > 0"
+    deadline = time.monotonic() + 60
+    while not page.evaluate(ready):
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
     page.close()
 
 

@@ -50,6 +50,7 @@ export class Stage {
   private readonly same = element("a", { class: "permalink", text: "link" });
   private readonly mark = element("code", { class: "digest" });
   private readonly how = element("p", { class: "how" });
+  private readonly fault = element("p", { class: "hint fault" }, element("span"), " ");
   private goal: { step: number; done: () => void } | undefined;
   private wanted = "";
   private wordsDue = 0;
@@ -76,7 +77,12 @@ export class Stage {
       void this.copy();
     });
     this.bar.append(this.play, this.again, this.clock, this.same, this.mark);
-    this.how.hidden = true;
+    this.how.hidden = this.fault.hidden = true;
+    const retry = button("Try again");
+    retry.addEventListener("click", () => this.begin());
+    this.fault.setAttribute("role", "alert");
+    this.fault.append(retry);
+    above.after(this.fault);
     const near = new IntersectionObserver((entries) => (this.near = entries[entries.length - 1]!.isIntersecting));
     near.observe(host.closest("section")!);
     (host.querySelector(".meters") ?? host.querySelector(".view"))!.after(this.bar, this.how);
@@ -93,7 +99,7 @@ export class Stage {
   begin(seed = this.seed): void {
     this.live?.close();
     this.finish();
-    this.how.hidden = true;
+    this.how.hidden = this.fault.hidden = true;
     [this.seed, this.frame, this.edited, this.actions, this.wanted] = [seed, undefined, false, undefined, ""];
     this.chosen = this.camera.chosen ?? -1;
     this.notes = new Map();
@@ -264,7 +270,9 @@ export class Stage {
     const { live } = this;
     const digest = live.digest();
     if (live.over && this.playing) this.setPlaying(false);
-    this.clock.textContent = live.error || `step ${show(live.last)}${live.over ? ", all dead" : ""}`;
+    this.fault.hidden = live.error === "";
+    if (live.error && !this.fault.firstElementChild!.textContent!.includes(live.error)) this.fault.firstElementChild!.textContent = `This world stopped: ${live.error}.`;
+    this.clock.textContent = `step ${show(live.last)}${live.over ? ", all dead" : ""}`;
     this.same.href = addressOf(this.place());
     this.mark.textContent = digest ? digest.slice(0, SHORT) : "";
     const same = this.wanted !== "" && digest.startsWith(this.wanted);
