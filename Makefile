@@ -1,7 +1,7 @@
 # Two commands from a fresh clone: `make run` and `make test`. Both install what they need into this folder.
 PYTHON ?= python3
 UV := $(shell command -v uv 2>/dev/null || echo .uv/bin/uv)
-RUN := $(UV) run --no-progress
+RUN := $(UV) run --no-progress --group dev
 # The tests of the viewer's page need a browser; without one they are skipped, and say what to install.
 BROWSER := $(if $(wildcard /usr/bin/chromium),--group browser)
 # Rules in Python are compiled by Numba, some 190 MB, and videos by ffmpeg, 30 MB: only the tests install them. Long tests
@@ -21,7 +21,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # The main job: a world in which a reward evolves within a minute on two cores.
 run: sync
-	$(RUN) hedon run appetite --steps 40960 --frames 64
+	$(UV) run --no-progress hedon run appetite --steps 40960 --frames 64
 
 # What a change can break, in a few minutes. Both side by side: each leaves a processor idle at times.
 test: everything
@@ -33,7 +33,7 @@ test-more: everything
 
 # Not `sync` first, which would remove what these tests need and install it again.
 everything: tools $(UV)
-	$(UV) sync --quiet $(BROWSER) $(SITE) $(EXTRA) --group cuda
+	$(UV) sync --quiet --group dev $(BROWSER) $(SITE) $(EXTRA) --group cuda
 
 SUITE = $(RUN) $(BROWSER) $(SITE) $(EXTRA) pytest --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 
@@ -68,8 +68,9 @@ test-long: sync
 	$(RUN) python tests/sanitize.py tsan --cuda
 	$(RUN) python tests/sanitize.py tsan
 
+# Removes nothing: what tests need stays.
 sync: tools $(UV)
-	$(UV) sync --quiet
+	$(UV) sync --quiet --inexact
 
 # What has to be there already, each with the advice that helps where it is not.
 .PHONY: tools
