@@ -39,8 +39,8 @@ from hedon.study.catalogue import reported_figures
 from hedon.text import brief
 
 EXPLANATION = (
-    "Agents are rewarded by weights that they inherit with mutations, and learn what pays. A weight that nothing "
-    "selects changes too, by chance: how far, genes tell that mutate along the same pedigree and do nothing."
+    "Agents inherit the weights of their reward, with mutations, and learn what pays. Weights also change by chance: "
+    "neutral genes, which are inherited alike and affect nothing, show how far."
 )
 NO_FIGURES = "none"
 SETTING = "What the setting itself says, before any run:"
@@ -153,10 +153,19 @@ def _write_summary(run: Run) -> Path:
 
 
 def _figures(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str, NamedFigure]]:
-    """Every figure with the condition that it belongs to; damaged snapshots are noted and left out."""
-    for condition, worlds in analysis.conditions.items():
-        for named in condition_figures(worlds, analysis.tables):
-            yield condition, _with_prefix(condition, named, several=len(analysis.conditions) > 1)
+    """Every figure with the condition that it belongs to: what evolved, what its worlds look like, and the rest."""
+    worlds = list(_worlds(analysis, faults))
+    for condition, records in analysis.conditions.items():
+        evolved, *rest = (
+            _with_prefix(condition, named, several=len(analysis.conditions) > 1)
+            for named in condition_figures(records, analysis.tables)
+        )
+        for named in (evolved, *(drawn for of, drawn in worlds if of == condition), *rest):
+            yield condition, named
+
+
+def _worlds(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str, NamedFigure]]:
+    """The last state of a world of each run; damaged snapshots are noted and left out."""
     for run in analysis.runs:
         condition = _condition_of(run, analysis)
         try:

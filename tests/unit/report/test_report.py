@@ -13,7 +13,7 @@ from hedon.record.error import RecordError
 from hedon.record.reader import open_run
 from hedon.report.run import write_report
 
-FIGURES = ["history", "weights", "population", "regime", "survival", "selection", "lineage", "demography", "world"]
+FIGURES = ["history", "world", "weights", "population", "regime", "survival", "selection", "lineage", "demography"]
 SVG = "{http://www.w3.org/2000/svg}"
 NAMES = ["summary.json", "report.html", "report.md", "analysis.json", *(f"{name}.svg" for name in FIGURES)]
 
