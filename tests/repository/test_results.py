@@ -207,6 +207,28 @@ def test_extinct_worlds_of_the_map_of_costs():
     assert f"one (0.03 … 5.4 %): seed {gone['seed']} at step {gone['extinct_step']:,}" in page("cost.md")
 
 
+def test_how_much_of_a_replayed_world_is_settled():
+    shown, rows = page("contingency.md"), table("contingency/apart.csv")
+    titles = {"neutral genes": "neutral genes", "w_normal_mean": "weight of food", "w_action_mean": "weight of action"}
+    for measure, title in (titles | {"alive_mean": "agents alive"}).items():
+        cells = []
+        for row in rows.filter(measure=measure).sort("step").to_dicts():
+            told = f"{row['ratio']:.2f} ({row['low']:.2f} … {row['high']:.2f})"
+            cells.append(f"**{told}**" if row["result"] == "partly settled" else told)
+        assert f"| {title} | {' | '.join(cells)} |" in shown
+    worlds = table("contingency/worlds.csv")
+    fresh = worlds.filter(past="fresh")
+    assert worlds["w_normal_mean"].min() > 0
+    assert f"{fresh['w_normal_mean'].min():.2f} to {fresh['w_normal_mean'].max():.2f}" in shown
+    spread = {name: fresh[name].std() for name in worlds.columns if name.startswith(("w_", "neutral"))}
+    neutral = np.mean([value for name, value in spread.items() if name.startswith("neutral")])
+    told = f"is {spread['w_normal_mean']:.2f}, that of the average neutral gene {neutral:.2f}, and that of action"
+    assert f"{told} {spread['w_action_mean']:.2f}" in shown.replace("\n", " ")
+    lines = table("contingency/overlap.csv")
+    assert lines["p"].max() < 0.00805
+    assert f"{lines['descendants in all'].sum()} of the {lines['agents then'].sum():,}" in shown
+
+
 def test_the_papers_program_over_its_five_worlds():
     summary, shown = json.loads(page("program/baseline/summary.json")), page("released.md")
     lifetime = summary["mean_lifetime"]
