@@ -330,7 +330,7 @@ def test_comparisons_say_which_worlds_share_a_past(folder: Path, past: Path) -> 
         (("knockout", "whole/run", "acton"), "did you mean action?"),
         (("knockout", "whole/run@99999999", "action"), "has only 1,536 steps"),
         (("stability", "baseline", "--at", "food=50"), "must be one number from -10 to 10"),
-        (("stability", "baseline", "--at", "neutral_1=1"), "a neutral marker is the control"),
+        (("stability", "baseline", "--at", "neutral_1=1"), "a neutral gene is the control"),
         (
             ("stability", "predator", "--at", "action=1"),
             "needs a world of one species, and predator has prey",

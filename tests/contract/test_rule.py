@@ -193,8 +193,8 @@ def test_threads_and_checkpoints_change_nothing(file):
         ("wordy", r"it returns Literal.*: a rule returns one number"),
         ("curious", r"an agent has no memory_1: set reward.memory to 1 or more; it has normal"),
         ("untyped", r"an agent has no hungr; it has normal, action, w_normal, w_action, age"),
-        ("marked", "it reads neutral_1, a neutral marker: .*; genes that it may read are w_normal, w_action, and what"),
-        ("marked_item", r"it reads neutral_1, a neutral marker"),
+        ("marked", "it reads neutral_1, a neutral gene: .*; genes that it may read are w_normal, w_action, and what"),
+        ("marked_item", r"it reads neutral_1, a neutral gene"),
     ],
 )
 def test_a_rule_that_cannot_be_used_is_named(file, name, says):

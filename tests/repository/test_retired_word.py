@@ -26,6 +26,7 @@ RETIRED = {
     **{f"{choice} as a choice": rf"`\"?{choice}\"?`|={choice}\b" for choice in CHOICES},
     **{f"hedon {' '.join(words)}": rf"hedon {' '.join(words)}\b" for words in GONE},
     **{f"hedon {command} {option}": rf"hedon {command}[^\n`]* {option}\b" for command, option in GONE_OPTIONS},
+    "neutral gene": r"(?i)neutral\s+markers?\b",
 }
 
 

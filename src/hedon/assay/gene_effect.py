@@ -1,4 +1,4 @@
-"""Each gene by itself: does fitness depend on it? Neutral markers show what chance alone gives."""
+"""Each gene by itself: does fitness depend on it? Neutral genes show what chance alone gives."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

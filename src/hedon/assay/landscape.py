@@ -19,7 +19,7 @@ from hedon.error import HedonError
 from hedon.record.founder import Founders, make_founders
 
 NEUTRAL = 16
-"""Neutral markers of an assay: genes that are known to do nothing."""
+"""Neutral genes of an assay: genes that are known to do nothing."""
 ROWS = 2000
 """Genomes in the table that founders are taken from."""
 _SEED = 20260801
@@ -57,7 +57,7 @@ class MeasureSurface:
         worlds: that enter; a world in which the measure's mean is 0 does not.
         flat_p: chance that two genes explain this much or more if genes do nothing.
         quadratic, smooth: the surfaces.
-        effects: of each gene by itself, neutral markers too.
+        effects: of each gene by itself, neutral genes too.
     """
 
     measure: str
@@ -93,7 +93,7 @@ class Landscape:
 
 
 def assay_config(config: Config) -> Config:
-    """The condition without mutation, and with the assay's neutral markers."""
+    """The condition without mutation, and with the assay's neutral genes."""
     return without_mutation(config).with_("genome.neutral_count", NEUTRAL)
 
 

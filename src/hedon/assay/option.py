@@ -169,10 +169,10 @@ def condition_of(given: str | None, sources: Sequence[str]) -> str:
 
 
 def stability_config(config: Config, point: Mapping[str, float]) -> Config:
-    """A config whose founders begin around a point, with mutation as it is and the assay's neutral markers.
+    """A config whose founders begin around a point, with mutation as it is and the assay's neutral genes.
 
     Raises:
-        AssayError: The point has a neutral marker, or drift cannot be told: with several species, whose genes `--at`
+        AssayError: The point has a neutral gene, or drift cannot be told: with several species, whose genes `--at`
             does not name, or with two parents, since it is computed along pedigrees of one.
     """
     if len(config.species) > 1:
@@ -190,7 +190,7 @@ def stability_config(config: Config, point: Mapping[str, float]) -> Config:
         elif kind in config.food:
             changed = changed.with_(f"food.{kind}.gene.initial_mean", value)
         else:
-            raise AssayError(f"--at {column}={value:g}: a neutral marker is the control, so give food kinds and action")
+            raise AssayError(f"--at {column}={value:g}: a neutral gene is the control, so give food kinds and action")
     return changed
 
 

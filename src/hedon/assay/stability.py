@@ -67,7 +67,7 @@ class Stability:
         worlds: how many.
         extinct: how many died out.
         generations: mean over worlds.
-        courses: of each weight, neutral markers too, by column.
+        courses: of each weight, neutral genes too, by column.
         seeds: of the worlds in the courses.
     """
 

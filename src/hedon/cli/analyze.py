@@ -32,7 +32,7 @@ def analyze(
       genome      weights by birth cohort
       selection   differentials and gradients; price splits the change
       curvature   stabilizing or disruptive: quadratic gradients
-      drift       weights against neutral walks and neutral markers
+      drift       weights against neutral walks and neutral genes
       reversion   held near a value? Ornstein-Uhlenbeck against drift
       mode        one mode or two, over worlds
       mutation    what a child's own mutation does to its life, among siblings

@@ -40,7 +40,7 @@ def meal_colors(config: Settings, prey: Sequence[str] = ()) -> dict[str, str]:
 
 
 def weight_colors(names: Iterable[str], kinds: Mapping[str, str]) -> dict[str, str]:
-    """A color per weight: that of what is eaten, or those of action, of other rewards and of neutral markers."""
+    """A color per weight: that of what is eaten, or those of action, of other rewards and of neutral genes."""
     others = iter(OTHER_COLORS * 8)
     colors = {}
     for name in names:

@@ -123,7 +123,7 @@ def layouts(config: Settings) -> dict[str, SpeciesLayout]:
 
 
 def gene_columns(config: Settings) -> tuple[str, ...]:
-    """Names of the genes of all species, each once, in order; neutral markers last."""
+    """Names of the genes of all species, each once, in order; neutral genes last."""
     genes = {gene.name: gene for layout in layouts(config).values() for gene in layout.genes}
     return (
         *(name for name, gene in genes.items() if gene.role != "neutral"),
@@ -257,7 +257,7 @@ def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
     for name in genome.extra:
         made.add_gene(f"{EXTRA}{name}", "rule", f"{name}, for rules in Python", f"genome.extra.{name}")
     for i in range(genome.neutral_count):
-        meaning = "neutral marker: inherited and mutated, no effect"
+        meaning = "neutral gene: inherited and mutated, no effect"
         made.add_gene(f"neutral_{i + 1}", "neutral", meaning, "genome.neutral")
     observed, last = observed_channels(species, known)
     paid = {(term.name, term.channel) for term in made.terms}

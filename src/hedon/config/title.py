@@ -9,8 +9,8 @@ _ADJECTIVES = ("normal", "poor")
 
 
 def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:
-    """What the panel of each weight is called: those that enter the reward, and the first neutral marker."""
-    return {name: weight_title(name) for name in reward_names} | dict.fromkeys(neutral_names[:1], "neutral marker")
+    """What the panel of each weight is called: those that enter the reward, and the first neutral gene."""
+    return {name: weight_title(name) for name in reward_names} | dict.fromkeys(neutral_names[:1], "neutral gene")
 
 
 def weight_title(name: str) -> str:

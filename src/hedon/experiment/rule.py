@@ -50,7 +50,7 @@ class Rule:
         source: Where it comes from, and its text.
         columns: Fields of the record that the engine fills for each agent.
         genes: Those that are genes which the rule may read.
-        neutral: Those that are neutral markers, which it may not: what it reads would no longer be neutral.
+        neutral: Those that are neutral genes, which it may not: what it reads would no longer be neutral.
     """
 
     species: str
@@ -152,11 +152,11 @@ class Rule:
             raise self._error(cause(error, self.source.file)) from error
 
     def _refuse_neutral(self, said: str, error: BaseException) -> None:
-        """RuleError: a field that was said to be missing is a neutral marker."""
+        """RuleError: a field that was said to be missing is a neutral gene."""
         for name in self.neutral:
             if f"'{name}'" in said:
                 raise self._error(
-                    f"it reads {name}, a neutral marker: that shows drift because nothing reads it, so no rule may; "
+                    f"it reads {name}, a neutral gene: that shows drift because nothing reads it, so no rule may; "
                     f"genes that it may read are {', '.join(self.genes) or 'none'}, and what genome.extra adds: "
                     f"genome.extra.NAME gives the species a gene {EXTRA}NAME"
                 ) from error

@@ -28,7 +28,7 @@ MEAN_KEYS: dict[str, str] = {
     "agents": "agents in the record, dead and alive",
     "extinct_worlds": "number of worlds in which nobody is left",
     **_averaged(everywhere=True),
-    "weights": "by genome column: worlds' mean weight as mean and interval; neutral markers show drift alone",
+    "weights": "by genome column: worlds' mean weight as mean and interval; neutral genes show drift alone",
     "pooled": "over the dead of all worlds, each agent alike: agents, mean_lifetime, food_per_step",
     "surviving": "the same means and intervals without the extinct worlds, which papers tend to replace",
 }

@@ -63,7 +63,7 @@ def living(folder: Path, step: int | None, config: Config) -> Founders:
     """The genomes of those alive after a step of a run, or at its end, from its table of agents.
 
     Where the run has several species, each gives its genes to the species of the same name; a species of which nobody
-    lives, or that the run lacks, is drawn from the config's laws. Neutral markers that the config has no room for are
+    lives, or that the run lacks, is drawn from the config's laws. Neutral genes that the config has no room for are
     left out; those that the run lacks are drawn from its laws.
 
     Args:
@@ -98,7 +98,7 @@ def living(folder: Path, step: int | None, config: Config) -> Founders:
 
 
 def _genomes(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], NDArray[np.float64]]:
-    """The genes of a run's agents, and their columns: all that it has, but for neutral markers without room."""
+    """The genes of a run's agents, and their columns: all that it has, but for neutral genes without room."""
     for gene in run.reward_names:
         if column_of(config, gene) != gene:
             raise FounderError(f"founders {brief(str(run.path))!r}: {unknown_gene(config, gene)}")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
 MAX_COLUMNS = 1000
-"""Most food kinds and neutral markers that a manifest may name; each is a column of the tables."""
+"""Most food kinds and neutral genes that a manifest may name; each is a column of the tables."""
 MAX_NUMBER = 2**63 - 1
 
 STATUSES = ("running", "finished", "interrupted", "failed")
@@ -118,7 +118,7 @@ class Manifest:
 
     Attributes:
         food_kinds: names, in the order of the config; fixes the columns of the tables.
-        neutral_count: number of neutral markers; fixes the columns of the tables.
+        neutral_count: number of neutral genes; fixes the columns of the tables.
         seeds: one per world.
         species: names, in the order of the config.
         rewards: names of the genes that have an effect on the reward; empty for one per food kind, and action.

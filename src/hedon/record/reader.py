@@ -89,7 +89,7 @@ class Run:
 
     @property
     def neutral_names(self) -> tuple[str, ...]:
-        """Names of the neutral markers."""
+        """Names of the neutral genes."""
         return self.columns.neutral_names
 
     def __repr__(self) -> str:

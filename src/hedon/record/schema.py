@@ -1,7 +1,7 @@
 """Every table of a run, column by column. The writer, the reader and the documentation all use this.
 
 Columns that depend on the settings are generated: one `eaten_<kind>`, `w_<kind>` and so on for each food
-kind, in the order of the config, and one `neutral_<i>` for each neutral marker.
+kind, in the order of the config, and one `neutral_<i>` for each neutral gene.
 """
 
 from collections import Counter
@@ -26,7 +26,7 @@ class Columns:
 
     Attributes:
         food_kinds: names, in the order of the config.
-        neutral_count: number of neutral markers.
+        neutral_count: number of neutral genes.
         species: names, in the order of the config.
         rewards: names of the genes that have an effect on the reward, of all species, in order.
         prey: names of the species that are eaten, by others or by their own kind.
@@ -56,7 +56,7 @@ class Columns:
 
     @property
     def neutral_names(self) -> tuple[str, ...]:
-        """Names of the neutral markers."""
+        """Names of the neutral genes."""
         return tuple(f"neutral_{i + 1}" for i in range(self.neutral_count))
 
     @property
@@ -66,7 +66,7 @@ class Columns:
 
     @property
     def shown_names(self) -> tuple[str, ...]:
-        """The genes as a terminal shows them: the weights, and one neutral marker as a control."""
+        """The genes as a terminal shows them: the weights, and one neutral gene as a control."""
         return (*self.reward_names, *self.neutral_names[:1])
 
     @property
@@ -275,7 +275,7 @@ def _gene_column(name: str, columns: Columns) -> Column:
 def _gene_meaning(name: str, columns: Columns) -> str:
     what = name.removeprefix("w_")
     if name in columns.neutral_names:
-        return "neutral marker: inherited and mutated, no effect on the reward"
+        return "neutral gene: inherited and mutated, no effect on the reward"
     if name == "w_action":
         return "reward weight for motor action"
     if what in columns.food_kinds:

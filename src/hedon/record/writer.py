@@ -41,7 +41,7 @@ class Writer:
     Args:
         folder: made if it does not exist; must not hold a run already, unless `parts` is given.
         config_text: the complete config, as TOML; not written for a resumed run, which has it already.
-        manifest: its food kinds and its number of neutral markers fix the columns.
+        manifest: its food kinds and its number of neutral genes fix the columns.
         part_rows: rows after which a part is written.
         queue_size: calls that may wait for the thread.
         parts: for a resumed run: the SHA-256 of each existing part, in order, by table.

@@ -52,9 +52,9 @@ run.frames()      # polars.LazyFrame
 ```
 
 Types: i32, i64, f32, f64 are integers and floats of that many bits; "null" means that a value may be
-missing. The tables are shown for one food kind `normal` and one neutral marker. With more kinds,
+missing. The tables are shown for one food kind `normal` and one neutral gene. With more kinds,
 `eaten_<kind>`, `food_<kind>`, `w_<kind>`, `w_<kind>_mean` and `w_<kind>_sd` repeat in the order of the
-config; with more markers so do `neutral_<i>`, `neutral_<i>_mean` and `neutral_<i>_sd`. Below each table stand the
+config; with more neutral genes so do `neutral_<i>`, `neutral_<i>_mean` and `neutral_<i>_sd`. Below each table stand the
 columns of worlds with further mechanisms; where species differ, a gene that a species lacks is missing.
 """
 

@@ -16,7 +16,7 @@ from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, POIS
 CONDITIONS = (*SIZES, *PLACES[1:], POOR, POISON)
 REWARDS = {"w_normal": "weight of food", "w_action": "weight of action"}
 """The weights that all conditions have."""
-MARKER = {"neutral_1": "neutral marker"}
+MARKER = {"neutral_1": "neutral gene"}
 ALL = "all conditions"
 _BOUNDS = ("low", "high", "drift_low", "drift_high")
 
@@ -30,7 +30,7 @@ _TESTS = (
 )
 _SHARED = (
     "Worlds of one seed share founders and the mutations of agents of equal number in all conditions, so that they are "
-    "not quite independent; the neutral marker, which nothing selects, shows what that alone would do."
+    "not quite independent; the neutral gene, which nothing selects, shows what that alone would do."
 )
 _DRAWN = (
     "A point is a world, by the color of its seed; the band holds 95 % of drifting genes. Below, the mean over all "

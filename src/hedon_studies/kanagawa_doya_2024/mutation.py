@@ -10,7 +10,7 @@ from hedon.study import Condition, ItemInputs, sentences
 from hedon_studies.kanagawa_doya_2024 import figure
 from hedon_studies.kanagawa_doya_2024.analysis.bias import COMPARISONS, Drift, compare, gene_drift
 
-GENES = {"w_normal": "weight of food", "w_action": "weight of action", "neutral_1": "neutral marker"}
+GENES = {"w_normal": "weight of food", "w_action": "weight of action", "neutral_1": "neutral gene"}
 _ALL = "all genes"
 
 _PREDICTION = (

@@ -38,7 +38,7 @@ NOISE = Item(
     "noise",
     "Tabulated mutation noise",
     "The released program draws the mutations of each window from the same small table. Does the table's mean "
-    "predict where the weights go, the neutral marker's included?",
+    "predict where the weights go, the neutral gene's included?",
     make_noise,
     CONDITIONS,
     SCALE,

@@ -1,4 +1,4 @@
-"""The paper's figures of how rewards evolve: mean weights over time, world by world, beside the neutral marker."""
+"""The paper's figures of how rewards evolve: mean weights over time, world by world, beside the neutral gene."""
 
 from collections.abc import Iterator, Sequence
 from functools import partial

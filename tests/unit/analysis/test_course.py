@@ -54,7 +54,7 @@ def test_the_topic_pools_worlds_and_leaves_out_torn_ones(worlds: list[WorldRecor
     assert pooled.rows["weight"].to_list() == list(three[0].weight_names)
     assert set(pooled.rows["worlds"]) == {3}
     assert by_world.rows.height == 3 * len(three[0].weight_names)
-    assert pooled.rows["p_holm"].null_count() == 8  # neutral markers are not corrected
+    assert pooled.rows["p_holm"].null_count() == 8  # neutral genes are not corrected
     assert (pooled.rows["strength_low"] <= pooled.rows["strength"]).all()
     empty = read_worlds([open_run(write_run(tmp_path / "run", intervals=0, worlds=1, snapshot=False))])
     assert reversion_topic(by_condition(empty))[0].rows.is_empty()

@@ -127,7 +127,7 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
 
 
 def _with_excess(by_world: pl.DataFrame, conditions: Conditions) -> pl.DataFrame:
-    """Adds what a weight's curvature exceeds the mean of the neutral markers of its world by, itself not among them."""
+    """Adds what a weight's curvature exceeds the mean of the neutral genes of its world by, itself not among them."""
     neutral = {name for worlds in conditions.values() for world in worlds for name in world.neutral_names}
     of_marker = pl.col("curvature").filter(pl.col("weight").is_in(sorted(neutral)))
     group = ("condition", "seed", "fitness")

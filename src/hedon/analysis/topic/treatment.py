@@ -33,10 +33,10 @@ def mutation_topic(conditions: Conditions) -> list[ResultTable]:
     note = (
         "Children of one parent are compared, so parent and place cannot matter: what differs is their own mutation. "
         f"effect: change of the outcome over its mean, per unit of the weight (clipped at ± {CLIP:g}), or per standard "
-        "deviation of the rank. Neutral markers do nothing, and show what chance gives. Intervals: bootstrap over "
+        "deviation of the rank. Neutral genes do nothing, and show what chance gives. Intervals: bootstrap over "
         "parents."
     )
     return [
         make_table("mutation", "What mutations do to the lives of children", shown, note),
-        make_table("mutation_gene", "What mutations of each gene do, neutral markers too", rows, shown=False),
+        make_table("mutation_gene", "What mutations of each gene do, neutral genes too", rows, shown=False),
     ]

@@ -94,7 +94,7 @@ class WorldRecord:
 
     @property
     def weight_names(self) -> tuple[str, ...]:
-        """All genome columns, in order: those that enter the reward, then the neutral markers."""
+        """All genome columns, in order: those that enter the reward, then the neutral genes."""
         return (*self.reward_names, *self.neutral_names)
 
     def recorded_step(self) -> int:

@@ -23,7 +23,7 @@ class Kind:
     Attributes:
         foods: the kinds of food that it may eat.
         prey: the species that it may eat, its own among them if it does.
-        rewards, neutral: its genes: those that have an effect, and the neutral markers.
+        rewards, neutral: its genes: those that have an effect, and the neutral genes.
     """
 
     foods: tuple[str, ...]

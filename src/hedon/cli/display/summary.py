@@ -71,7 +71,7 @@ class _Part:
 
     @property
     def shown(self) -> list[str]:
-        """The weights, and of the neutral markers the first."""
+        """The weights, and of the neutral genes the first."""
         neutral = [name for name in self.means["weights"] if name.startswith("neutral_")]
         return [name for name in self.means["weights"] if name not in neutral[1:]]
 

@@ -54,11 +54,11 @@ class MutationConfig:
 
 @dataclass(frozen=True, slots=True)
 class GenomeConfig:
-    """The weights of the reward, genes that set numbers, genes for rules, then neutral markers that have no effect.
+    """The weights of the reward, genes that set numbers, genes for rules, then neutral genes that have no effect.
 
     `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, `[genome.prey]`
     that of each species that is eaten, `[genome.second]` the second gene of each weight where the family of the
-    reward has one, and `[genome.neutral]` each neutral marker.
+    reward has one, and `[genome.neutral]` each neutral gene.
     `[genome.learning.NAME]` makes a gene of learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the
     learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
     actions, by 10^g. `[genome.family.NAME]` does so for threshold or threshold_width of the family of the reward.
@@ -70,7 +70,7 @@ class GenomeConfig:
     """
 
     neutral_count: int = setting(
-        16, "number of neutral markers: inherited and mutated like weights, a control for drift", "", OURS, ge=0, le=16
+        16, "number of neutral genes: inherited and mutated like weights, a control for drift", "", OURS, ge=0, le=16
     )
     mutation_scale: float = setting(0.02, "scale of the noise added to every weight at birth", "", EITHER, ge=0, le=1e3)
     weight_limit: float = setting(10.0, "weights are clipped to ± this", "", EITHER, gt=0, le=1e3)

@@ -25,7 +25,7 @@ _POINTS = 100
 
 
 def draw_fates(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Figure:
-    """Agents alive, weight of food, weight of action and neutral marker over time: a line per world, colored by fate.
+    """Agents alive, weight of food, weight of action and neutral gene over time: a line per world, colored by fate.
 
     A cross marks where a world ends before the longest.
     """
@@ -34,7 +34,7 @@ def draw_fates(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Figure:
     rows = history(pl.concat(populations), ("normal",), names, points=_POINTS)
     unit, _ = step_unit(last_step(rows))
     titles = {"alive": "agents alive", "w_normal_mean": "weight of food", "w_action_mean": "weight of action"}
-    titles |= {"neutral_1_mean": "neutral marker"}
+    titles |= {"neutral_1_mean": "neutral gene"}
     with styled():
         figure = new_figure(9.0, 4.8)
         panels = figure.subplots(2, 2, sharex=True).ravel()
