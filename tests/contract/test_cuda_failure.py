@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from command import hedon
 from cuda_emulation import emulated as emulated
 from resumed_run import WINDOW, small_run
 from worlds import QUICK, make_simulation
@@ -15,7 +16,7 @@ from hedon import _engine
 from hedon.check.run import check_run
 from hedon.error import EngineError
 from hedon.experiment import device
-from hedon.experiment.device import EMULATION_VARIABLE
+from hedon.experiment.device import EMULATION_VARIABLE, few_worlds
 from hedon.experiment.resume import resume
 from hedon.experiment.simulation import BACKEND_VARIABLE
 from hedon.record.manifest import load_manifest
@@ -40,6 +41,20 @@ def test_too_little_memory_is_one_sentence_and_leaves_the_device_usable(emulated
         make_simulation(*QUICK, *FEW, backend=emulated)
     fails(NEVER, NEVER)
     make_simulation(*QUICK, *FEW, backend=emulated).run(3)
+
+
+@pytest.mark.parametrize("by", ["option", "variable"])
+def test_a_run_of_few_worlds_says_that_the_processor_may_be_faster(
+    emulated: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, by: str
+):
+    if by == "variable":
+        monkeypatch.setenv(BACKEND_VARIABLE, emulated)
+    chosen = ("--backend", emulated) if by == "option" else ()
+    settings = [word for each in (*QUICK, *FEW) for word in ("--set", each)]
+    done = hedon("run", "baseline", "--steps", "2", *settings, *chosen, "--no-report", "--out", str(tmp_path / "run"))
+    assert "processor cores here are probably faster than a device: leave --backend out." in done.stdout
+    assert few_worlds(3, 1) == ""
+    assert few_worlds(2, 1).startswith("With fewer than about 3 worlds, the 1 processor")
 
 
 def test_a_device_that_is_lost_takes_nothing_with_it_that_the_host_has(emulated: str, fails: Fails):

@@ -1,5 +1,6 @@
 """`hedon run`: runs a condition and reports on it."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -103,7 +104,10 @@ def run(
 def run_and_report(plan: "RunPlan", go: Callable[["Callback"], "Manifest"], begun: str = "", *, report: bool) -> None:
     """Prints what will be run, shows progress while it runs, and reports."""
     from hedon.cli.display.run import RunDisplay, duration
+    from hedon.experiment.device import few_worlds, is_device
     from hedon.experiment.interrupt import interrupted_code
+    from hedon.experiment.simulation import BACKEND_VARIABLE
+    from hedon.record.provenance import usable_cpus
     from hedon.record.schema import columns_of
 
     config, console = plan.config, make_console()
@@ -112,6 +116,9 @@ def run_and_report(plan: "RunPlan", go: Callable[["Callback"], "Manifest"], begu
         f"hedon: {config.name} ({config.fidelity}), {worlds}, {plan.steps:,} steps{begun}, into {out}",
         soft_wrap=True,
     )
+    backend = plan.backend or os.environ.get(BACKEND_VARIABLE, "")
+    if is_device(backend) and (advice := few_worlds(len(plan.seeds), usable_cpus())):
+        console.print(advice, soft_wrap=True)
     with RunDisplay(console, columns_of(config), plan.seeds) as display:
         manifest = go(display.update)
     for seed, extinct in zip(plan.seeds, manifest.extinct_steps, strict=True):
