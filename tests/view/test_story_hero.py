@@ -17,20 +17,20 @@ STRIP = "[...document.querySelector('#hero-world').getContext('2d').getImageData
 
 def test_it_begins_within_a_second_and_can_rest(story_site, watch):
     watched = watch(story_site.link + PAGE)
-    watched.until("window.hero?.moment() > 2")
+    watched.until("hedon.hero?.moment() > 2")
     assert watched.page.locator("#hero-world").is_visible()
     assert "alive, mean feeling" in watched.page.locator("#hero-clock").inner_text()
     watched.page.locator("#hero-play").click()
-    at = watched.get("hero.moment()")
+    at = watched.get("hedon.hero.moment()")
     watched.until("hedon.pictures > 30")
-    assert watched.get("hero.moment()") == at
-    watched.get("hero.jump(320)")
+    assert watched.get("hedon.hero.moment()") == at
+    watched.get("hedon.hero.jump(320)")
     watched.until("document.querySelector('#hero-clock').textContent.startsWith('step 20,480')")
 
 
 def test_with_reduced_motion_it_shows_its_end(story_site, watch):
     watched = watch(story_site.link + PAGE, reduced_motion="reduce")
-    watched.until("window.hero && document.querySelector('#hero-clock').textContent.startsWith('step 20,480')")
+    watched.until("hedon.hero && document.querySelector('#hero-clock').textContent.startsWith('step 20,480')")
     assert watched.page.locator("#hero-play").inner_text() == "Play"
 
 

@@ -165,7 +165,7 @@ def test_the_article_goes_into_a_folder_for_any_server(tmp_path, watch):
     assert "open its story.html" in done.stdout
     with serving(site_server(tmp_path / "site")) as server:
         watched = watch(f"http://127.0.0.1:{server.server_port}/{PAGE}")
-        watched.until("window.hero?.moment() > 0 && hedon.scenes.creature")
+        watched.until("hedon.hero?.moment() > 0 && hedon.scenes.creature")
         watched.get("document.querySelector('#creature').scrollIntoView({ behavior: 'instant' })")
         watched.until("hedon.scenes.creature.stage.live?.last > 0")
 

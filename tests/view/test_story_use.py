@@ -19,7 +19,7 @@ HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
 def test_without_graphics_the_text_and_the_recording_stay(story_site, browser):
     page = browser.new_page()
     page.add_init_script(NO_GRAPHICS)
-    Watched(page, story_site.link + PAGE).until("hedon.pictures > 2 && window.hero?.moment() > 1")
+    Watched(page, story_site.link + PAGE).until("hedon.pictures > 2 && hedon.hero?.moment() > 1")
     said = page.locator(".fault").all_inner_texts()
     assert set(said) == {"This scene cannot be shown: this browser has no WebGL2."}
     assert page.evaluate("Object.keys(hedon.scenes)") == []

@@ -1,5 +1,6 @@
 // A world that the engine runs in this page, as a source of moments.
 import { counted } from "./element";
+import { fileAddress, liveWorker } from "./files";
 import { Lives } from "./lives";
 import type { Actions, Edit, Moment, Order, Report } from "./live.worker";
 import { columnOf, Series } from "./series";
@@ -67,7 +68,7 @@ export class Live implements Source {
   private readonly frames: Frame[] = [];
   private sampled = { step: 0, births: 0, deaths: 0 };
   private measured = { time: performance.now(), steps: 0 };
-  private readonly worker = new Worker(new URL("./live.worker.ts", import.meta.url), { type: "module" });
+  private readonly worker = liveWorker();
 
   constructor(
     readonly world: LiveWorld,
@@ -78,7 +79,7 @@ export class Live implements Source {
     this.worker.onmessage = ({ data }: MessageEvent<Report>) => this.take(data);
     const text = textOf(world, changes, seed);
     this.layout = lawful(world.layout, text);
-    this.send({ type: "make", text, layout: world.layout, threads: wanted });
+    this.send({ type: "make", text, layout: world.layout, threads: wanted, modules: [fileAddress("hedon-relaxed.wasm"), fileAddress("hedon.wasm")] });
   }
 
   close(): void {

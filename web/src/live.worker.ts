@@ -12,7 +12,7 @@ export type Edit =
   | { type: "keep" }
   | { type: "back" };
 export type Order =
-  | { type: "make"; text: string; layout: Layout; threads: number }
+  | { type: "make"; text: string; layout: Layout; threads: number; modules: [string, string] } // that fuses multiply-adds, and that does not
   | { type: "do"; edit: Edit; chosen: number; digest: boolean }
   | { type: "advance"; steps: number; milliseconds: number; chosen: number; digest: boolean; trace?: boolean; actions?: Actions };
 /** What an agent whose policy is `external` does, before the sigmoid: of the left and of the right motor. */
@@ -47,16 +47,16 @@ let meals = new LastMeals();
 let ends: WindowEnd[] = [];
 let kept: { step: number; meals: LastMeals } | undefined;
 
-async function module(name: string): Promise<WebAssembly.Module | undefined> {
-  const bytes = new Uint8Array(await (await fetch(new URL(`../${name}`, self.location.href))).arrayBuffer());
+async function module(address: string): Promise<WebAssembly.Module | undefined> {
+  const bytes = new Uint8Array(await (await fetch(address)).arrayBuffer());
   return WebAssembly.validate(bytes) ? compile(bytes, SHARED) : undefined;
 }
 
 /** The module that fuses multiply-adds where this machine does so, since its digests are those of most machines. */
-async function load(): Promise<WebAssembly.Module> {
-  const relaxed = await module("hedon-relaxed.wasm");
+async function load([fusing, usual]: [string, string]): Promise<WebAssembly.Module> {
+  const relaxed = await module(fusing);
   if (relaxed && new Engine(relaxed, SHARED).fuses) return relaxed;
-  const plain = await module("hedon.wasm");
+  const plain = await module(usual);
   if (!plain) throw new Error("this browser cannot run the engine: it needs WebAssembly with SIMD and atomic operations");
   return plain;
 }
@@ -87,7 +87,7 @@ async function make(order: Order & { type: "make" }): Promise<Report> {
   engine?.close();
   engine = undefined;
   const threads = SHARED ? order.threads || Math.min(USUAL_THREADS, navigator.hardwareConcurrency) : 1;
-  const fresh = await Engine.make(await load(), order.text, { shared: SHARED, threads, hire });
+  const fresh = await Engine.make(await load(order.modules), order.text, { shared: SHARED, threads, hire });
   engine = fresh;
   layout = order.layout;
   meals = new LastMeals();

@@ -29,10 +29,10 @@ void main() {
     float front = dot(at, middle) / max(r, 1e-6);
     float mouth = smoothstep(0.80, 0.86, r) * step(shape.x, front);
     base = mix(base, vec3(0.93, 0.2, 0.2), mouth);
-    // Two eyes where there is room for them, one dark spot on small discs.
+    // Two eyes where there is room for them, one dark spot on small discs. Their white is darker than any ground.
     vec2 aside = vec2(abs(dot(at, vec2(ahead.y, -ahead.x))), dot(at, ahead));
     float large = smoothstep(0.16, 0.10, pixel);
-    base = mix(base, vec3(1.0), large * (1.0 - smoothstep(0.26 - pixel, 0.26 + pixel, length(aside - vec2(0.34, 0.48)))));
+    base = mix(base, vec3(0.88, 0.91, 0.95), large * (1.0 - smoothstep(0.26 - pixel, 0.26 + pixel, length(aside - vec2(0.34, 0.48)))));
     base = mix(base, vec3(0.05), large * (1.0 - smoothstep(0.13 - pixel, 0.13 + pixel, length(aside - vec2(0.37, 0.57)))));
     base = mix(base, vec3(0.05), (1.0 - large) * (1.0 - smoothstep(0.14, 0.14 + pixel * 2.0, length(at - 0.5 * ahead))));
     base *= 1.0 - 0.35 * smoothstep(0.90, 1.0, r) * (1.0 - mouth);

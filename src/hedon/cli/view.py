@@ -26,7 +26,11 @@ def view(
         bool, typer.Option("--story", help="The article to play with: where do rewards come from?")
     ] = False,
     export: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write a site for any web server instead of opening the page.")
+        Path | None,
+        typer.Option(
+            metavar="DIR|FILE.html",
+            help="Write a site for any web server instead of opening the page; with --story alone, also one file.",
+        ),
     ] = None,
     port: Annotated[int, typer.Option(help="Port of the local server; 0 for any free one.", min=0, max=65535)] = 0,
     open_browser: Annotated[bool, typer.Option("--open/--no-open", help="Open the browser.")] = True,
@@ -43,6 +47,7 @@ def view(
       hedon view --live
       hedon view --live poison
       hedon view --story
+      hedon view --story --export article.html
       hedon view runs/seen --export site
       hedon view runs/seen --story --export site
     """
@@ -52,6 +57,7 @@ def view(
     from hedon.view.export import export as write_site
     from hedon.view.live import require_live
     from hedon.view.server import Server
+    from hedon.view.single import write_single
     from hedon.view.story import PAGE, story
 
     if run is None and not live and not article:
@@ -59,6 +65,14 @@ def view(
     source = (run or DEFAULT_PRESET) if live else ""
     if source:
         require_live(load_config(source), source)  # whatever is wrong with it is said here
+    if export is not None and export.suffix == ".html":
+        if run is not None or live or not article:
+            raise ViewArgumentError(
+                f"--export {export}: only the article alone fits into one file; give a folder instead"
+            )
+        size = write_single(export, story())
+        typer.echo(f"wrote {printable(str(export))}, {size / 1e6:.1f} MB: open it in any browser")
+        return
     index = None if live or run is None else _index(run)
     front = PAGE if article else "index.html"
     with ThreadPoolExecutor(1) as pool:

@@ -19,7 +19,8 @@ def export(folder: Path, data: Mapping[str, Any], records: Mapping[str, Path]) -
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ViewError(f"{folder} is not empty: choose a new folder, or remove what is in it first")
-    pages = {name: path for name, path in page_files().items() if "story" in data or not name.startswith("hero.")}
+    needless = ("single.js",) if "story" in data else ("single.js", "hero.gz", "hero.jpg")
+    pages = {name: path for name, path in page_files().items() if name not in needless}
     pairs = [*pages.items(), *((f"data/run/{name}", path) for name, path in records.items())]
     for name, path in pairs:
         target = folder / name

@@ -1,6 +1,7 @@
 // What the article opens with: a recording of a world in which a feeling evolves, with two genes counted below it.
 import { diverging } from "../color";
 import { by, show, styleColor, surface } from "../element";
+import { fileAddress } from "../files";
 import { type Actor, load } from "./recording";
 import { CALM } from "./stage";
 
@@ -13,12 +14,18 @@ const COUNT_MS = 100; // between two counts
 const FADE = 3; // moments in which a creature appears, and in which the ring of one that died fades
 const EYE = 0.6; // from the middle of the face to an eye [radian]
 
+/** What a curious person's console has of it, and tests. */
+interface Playing {
+  moment: () => number;
+  jump: (to: number) => void;
+}
+
 /** Plays the recording while it is seen; without it the picture stays. */
-export async function hero(): Promise<void> {
-  const recording = await load("hero.gz");
+export async function hero(): Promise<Playing> {
+  const recording = await load(fileAddress("hero.gz"));
   const canvas = by<HTMLCanvasElement>("hero-world");
   const ink = canvas.getContext("2d");
-  if (!ink) return;
+  if (!ink) throw new Error("this browser draws no pictures");
   const play = by<HTMLButtonElement>("hero-play");
   const { head } = recording;
   const limit = head.limit * SPAN;
@@ -111,12 +118,12 @@ export async function hero(): Promise<void> {
     label();
   });
   new IntersectionObserver((entries) => (seen = entries[entries.length - 1]!.isIntersecting)).observe(canvas);
-  Object.assign(window, { hero: { recording, moment: () => moment, jump: (to: number) => (moment = to) } });
   label();
   play.hidden = false;
   canvas.hidden = false;
   by("hero-genes").hidden = false;
   requestAnimationFrame(picture);
+  return { moment: () => moment, jump: (to) => (moment = to) };
 }
 
 /** Where it looks [radian of the canvas]: along its way, as far as that is known, turning smoothly. */

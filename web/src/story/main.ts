@@ -1,6 +1,7 @@
 // Where the article begins: makes its scenes, plays those that are seen, and opens the places of links.
 import "./story.css";
 import { by, element } from "../element";
+import { fileAddress } from "../files";
 import { recallTheme, switchTheme } from "../preference";
 import { contest } from "./contest";
 import { creature } from "./creature";
@@ -21,7 +22,7 @@ const story = { scenes, pictures: 0, opened: "" };
 Object.assign(window, { hedon: story }); // for a curious person's console, and for tests
 
 async function begin(): Promise<void> {
-  const answer = await fetch("data/story.json");
+  const answer = await fetch(fileAddress("data/story.json"));
   if (!answer.ok) throw new Error("this site was made without the article: call hedon view --story");
   const { worlds } = (await answer.json()) as { worlds: Worlds };
   const seen = new IntersectionObserver((entries) => entries.forEach(see), { rootMargin: "-15% 0px" });
@@ -107,10 +108,13 @@ document.addEventListener("visibilitychange", () => Object.values(scenes).forEac
 function open(): void {
   const fault = by("hero-fault");
   fault.hidden = true;
-  hero().catch((error) => {
-    fault.querySelector("span")!.textContent = `The recording cannot be played: ${told(error)}.`;
-    fault.hidden = false;
-  });
+  hero().then(
+    (playing) => Object.assign(story, { hero: playing }),
+    (error) => {
+      fault.querySelector("span")!.textContent = `The recording cannot be played: ${told(error)}.`;
+      fault.hidden = false;
+    },
+  );
 }
 by("hero-fault").querySelector("button")!.addEventListener("click", open);
 

@@ -1,0 +1,69 @@
+"""Writes the article as one file that any browser opens, also without a server."""
+
+import base64
+import gzip
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from hedon.record.atomic import write_atomically
+from hedon.view.page import CONTENT_TYPES, page_files, to_json
+from hedon.view.story import PAGE
+
+POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; "
+    "connect-src data: blob:; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'"
+)
+HELD = (
+    "assets/story.js",
+    "assets/csv.js",
+    "assets/live.worker.js",
+    "hedon-relaxed.wasm",
+    "hedon.wasm",
+    "hero.gz",
+)
+"""What the page would ask a server for, besides the worlds of the scenes. `single.js` gives each an address."""
+
+
+def write_single(path: Path, told: Mapping[str, Any]) -> int:
+    """Writes the article with all that it needs into a file, over one that is there.
+
+    Args:
+        path: The file.
+        told: What `story()` gives.
+
+    Returns:
+        The bytes written.
+
+    Raises:
+        RecordError: The file cannot be written.
+        ViewError: The page has not been built.
+    """
+    files = page_files()
+    held = {name: files[name].read_bytes() for name in HELD} | {"data/story.json": to_json(told)}
+    parts = "\n".join(_held(name, content) for name, content in held.items())
+    picture = f"data:image/jpeg;base64,{base64.b64encode(files['hero.jpg'].read_bytes()).decode()}"
+    style, begin = (files[name].read_text(encoding="utf-8") for name in ("assets/story.css", "single.js"))
+    page = files[PAGE].read_text(encoding="utf-8")
+    for pattern, text in (
+        (r'(?<=http-equiv="Content-Security-Policy")\s+content="[^"]*"', f' content="{POLICY}"'),
+        (r'<script type="module"[^>]*></script>\s*', ""),
+        (r'<link rel="stylesheet"[^>]*>', f"<style>{style}</style>"),
+        (r'\s*<meta property="og:image"[^>]*>', ""),  # which must be an address
+        (r'(?<=src=")[^"]*hero\.jpg', picture),
+        (r"(?=</body>)", f"{parts}\n<script>{begin}</script>\n"),
+    ):
+        page, count = re.subn(pattern, lambda _, text=text: text, page)
+        assert count == 1, pattern
+    content = page.encode()
+    write_atomically(path, lambda file: file.write(content))
+    return len(content)
+
+
+def _held(name: str, content: bytes) -> str:
+    """A file as text of the page."""
+    kind = CONTENT_TYPES.get(Path(name).suffix, "application/octet-stream").partition(";")[0]
+    packed = content if name.endswith(".gz") else gzip.compress(content, 9, mtime=0)
+    text = base64.b64encode(packed).decode()
+    return f'<script type="text/plain" data-name="{name}" data-type="{kind}">{text}</script>'
