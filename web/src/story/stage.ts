@@ -50,7 +50,7 @@ export class Stage {
   private readonly same = element("a", { class: "permalink", text: "link" });
   private readonly mark = element("code", { class: "digest" });
   private readonly how = element("p", { class: "how" });
-  private readonly fault = element("p", { class: "hint fault" }, element("span"), " ");
+  private readonly fault = element("p", { class: "fault" }, element("span"), " ");
   private goal: { step: number; done: () => void } | undefined;
   private wanted = "";
   private wordsDue = 0;
