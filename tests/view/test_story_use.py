@@ -70,7 +70,7 @@ def test_the_scale_of_energy_follows_one_rule_from_the_first_step_on(watch):
     with serving(live_server("baseline")) as server:
         watched = watch(server.link)
         scale = watched.page.locator("#legend .scale")
-        watched.until("hedon.frame && document.querySelector('#legend .scale')")
+        watched.until("hedon.frame && document.querySelector('#legend .scale')?.innerText")
         first = scale.inner_text()
         run_live(watched, 320)
         watched.get("(hedon.panelsDue = 0)")
