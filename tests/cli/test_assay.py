@@ -109,7 +109,7 @@ def test_an_interrupted_assay_goes_on_to_the_same_summary(folder: Path) -> None:
     process.send_signal(signal.SIGINT)
     printed, _ = process.communicate(timeout=120)
     assert process.returncode == 130
-    assert "The same command goes on." in printed
+    assert "The same command continues." in printed
     assert not (folder / "broken" / "landscape.json").exists()
     answer = call(folder, *command[2:])
     assert answer.returncode == 0, answer.stderr

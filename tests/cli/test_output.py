@@ -63,7 +63,7 @@ def test_a_run_whose_reader_has_enough_is_interrupted(command, tmp_path):
         code, said = call(words, writing, folder, unbuffered=True)
     finally:
         os.close(writing)
-    assert (code, said) == (141, "hedon: interrupted: nobody reads any more what it prints\n")
+    assert (code, said) == (141, "hedon: interrupted: its output is no longer read\n")
     manifest = json.loads((folder / "manifest.json").read_text())
     assert manifest["status"] == "interrupted"
     assert not check_run(folder).findings

@@ -21,7 +21,7 @@ def analyze(
     """Answer statistical questions about runs, and write every number.
 
     Runs of equal configs count as repetitions of one condition, with their worlds as the units. Prints short
-    tables and writes analysis.json and one CSV file per table. docs/guide/analysis.md says what each means.
+    tables and writes analysis.json and one CSV file per table. docs/guide/analysis.md explains them.
 
     \b
     Topics:

@@ -58,7 +58,7 @@ def landscape(
     surface over two genes, with its optimum, its slope at 0 and its curvature. Sixteen neutral genes show what chance
     alone gives.
 
-    Ctrl-C ends it, and the same command goes on. A finished assay is only read.
+    After Ctrl-C, the same command continues. A finished assay is only read.
 
     \b
     Examples:
@@ -88,8 +88,8 @@ def compete(a: First, b: Second, *, options: ContestOptions) -> None:
     """Two groups in one world, in equal numbers: which one grows?
 
     Half of the founders come from A and half from B; nothing mutates. Prints the selection coefficient of A per
-    generation with an interval over worlds, and the log ratio of the numbers over time. Ctrl-C ends it, and the same
-    command goes on.
+    generation with an interval over worlds, and the log ratio of the numbers over time. After Ctrl-C, the same command
+    continues.
 
     \b
     Examples:
@@ -172,8 +172,8 @@ def frequency(
 
     As compete, from several shares of A. Prints the selection coefficient of A per generation at each share, its slope
     over the share, and the share at which neither grows, all with intervals over seeds. If each group grows where it is
-    rare, the two can live together. Ctrl-C ends it, and the same command goes on; further shares are added to those
-    that are there if the first is the same or --out is given.
+    rare, the two can live together. After Ctrl-C, the same command continues; further shares are added to the existing
+    ones if the first is the same or --out is given.
 
     \b
     Examples:
@@ -205,9 +205,9 @@ def stability(
 ) -> None:
     """Begin evolution at a claimed end point, and see whether it stays.
 
-    Founders have the condition's own spread around the point, and mutation is on. Prints where each weight went
-    beside neutral genes that begin likewise and mutate along the same pedigrees. Ctrl-C ends it, and the same command
-    goes on.
+    Founders have the condition's own spread around the point, and mutation is on. Prints where each weight went,
+    compared with neutral genes that start alike and mutate along the same pedigrees. After Ctrl-C, the same command
+    continues.
 
     \b
     Examples:

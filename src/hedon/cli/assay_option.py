@@ -27,9 +27,7 @@ STEPS = 204_800
 
 Source = Annotated[str, typer.Argument(metavar="CONDITION", help="A preset's name or a config file (.toml).")]
 Seeds = Annotated[str, typer.Option(help="One world per seed: 7, or 1-5, or 1,4,7-9.")]
-Species = Annotated[
-    str | None, typer.Option(help="Whose genes, where there are several species; by default the first.")
-]
+Species = Annotated[str | None, typer.Option(help="Whose genes, if there are several species; by default the first.")]
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ def branch(
         str | None, typer.Option(help="Replay the tape: one future of a world per seed, as in 1-30.")
     ] = None,
     of: Annotated[
-        int | None, typer.Option(metavar="SEED", help="With --seeds: the old run's world, where it has several.")
+        int | None, typer.Option(metavar="SEED", help="With --seeds: which world of the old run, if it has several.")
     ] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")
@@ -39,7 +39,7 @@ def branch(
     """Continue from a checkpoint as a new run, with changed settings or different chance events.
 
     Without --set and --seeds the worlds continue unchanged in a new folder. With --seeds, one world has several
-    futures, which begin with the same agents and differ by chance alone. Settings that fix the layout of the saved
+    futures, which begin with the same agents and differ only by chance. Settings that fix the layout of the saved
     worlds (arena, numbers of rays and touch sectors, kinds of food, window) cannot be changed.
 
     \b

@@ -31,7 +31,7 @@ def compare(
         Path | None, typer.Option(help="Folder of the answer; by default SOURCE/compare, or compare for two sources.")
     ] = None,
 ) -> None:
-    """Compare two conditions: how much they differ, how certain that is, and how likely by chance alone.
+    """Compare two conditions: how much they differ, how certain that is, and how likely by chance.
 
     Worlds are the units, in pairs if their seeds are equal. Prints the difference of each measure with its interval,
     the effect size, and a permutation test that is corrected for the number of measures. Runs are compared at their

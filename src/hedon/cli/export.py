@@ -160,7 +160,7 @@ def dataset(
     from hedon.record.reader import open_run
 
     made = write_dataset([open_run(path) for path in runs], out or Path("dataset"), title, license_name, frames=frames)
-    typer.echo(f"wrote {made[0]} and {len(made) - 1} files beside it")
+    typer.echo(f"wrote {made[0]} and {len(made) - 1} further files")
 
 
 @app.command()

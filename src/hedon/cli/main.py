@@ -149,7 +149,7 @@ def main(command: typer.Typer = app) -> None:
         if not pipe_closed() or ending.code not in (None, 0, _CLOSED):
             raise
         if ending.code == _CLOSED:  # a run has ended early by that
-            typer.echo("hedon: interrupted: nobody reads any more what it prints", err=True)
+            typer.echo("hedon: interrupted: its output is no longer read", err=True)
         sys.exit(_CLOSED)
     except HedonError as error:
         fail(str(error))

@@ -102,7 +102,7 @@ def tell_left_out(faults: Sequence[str]) -> None:
 
 
 def require_finished(
-    jobs: "Sequence[Job]", ends: Mapping[Path, str], console: "Console", again: str = "The same command goes on."
+    jobs: "Sequence[Job]", ends: Mapping[Path, str], console: "Console", again: str = "The same command continues."
 ) -> None:
     """Ends the command, and says why, unless all runs are finished.
 

@@ -29,7 +29,7 @@ def report(
     Writes report.html (one file that holds everything, for any browser), report.md, figures/*.svg and analysis/
     (every number, as JSON and CSV), and RUN/summary.json for each run. Existing files are replaced. Prints our
     numbers next to those that studies report of the preset. Also works on runs that are still running, were interrupted
-    or have damaged files; the report then says so.
+    or have damaged files, which the report points out.
 
     \b
     Examples:

@@ -72,7 +72,7 @@ def run(
     *,
     options: ClusterOptions,
 ) -> None:
-    """Run a sweep, then print its table. The same command goes on with what is not finished.
+    """Run a sweep, then print its table. The same command continues an unfinished sweep.
 
     Worlds of one setting share a process, and settings take turns. Each finished batch is on disk at once. Ctrl-C or
     a kill loses no finished batch, and of the others what came after their last checkpoint. If the file has more

@@ -37,8 +37,8 @@ def view(
 ) -> None:
     """Watch a run in the browser, or a world that the browser simulates itself.
 
-    Shows positions if the run was made with --frames, and its plots in any case. A run that goes on is followed. Ctrl-C
-    ends the server. It can be reached from this machine only, by the link that it prints.
+    Shows positions if the run was made with --frames, and its plots in any case. A run in progress is followed. Ctrl-C
+    stops the server, which can be reached from this machine only, at the link that it prints.
 
     \b
     Examples:

@@ -16,7 +16,7 @@ def show_difference(a: Path, b: Path) -> bool:
     """Compares two runs, their worlds by seeds, as far as both have records.
 
     Returns:
-        Whether settings and records agree; versions and machines are told, and do not count.
+        Whether settings and records agree; versions and machines are listed but not compared.
 
     Raises:
         RecordError: A folder holds no run, or a damaged one.
