@@ -222,8 +222,8 @@ def test_how_much_of_a_replayed_world_is_settled():
     assert f"{fresh['w_normal_mean'].min():.2f} to {fresh['w_normal_mean'].max():.2f}" in shown
     spread = {name: fresh[name].std() for name in worlds.columns if name.startswith(("w_", "neutral"))}
     neutral = np.mean([value for name, value in spread.items() if name.startswith("neutral")])
-    told = f"is {spread['w_normal_mean']:.2f}, that of the average neutral gene {neutral:.2f}, and that of action"
-    assert f"{told} {spread['w_action_mean']:.2f}" in shown.replace("\n", " ")
+    told = f"is {spread['w_normal_mean']:.2f} for food, {neutral:.2f} for the average neutral gene"
+    assert f"{told}, and {spread['w_action_mean']:.2f} for action" in shown.replace("\n", " ")
     lines = table("contingency/overlap.csv")
     assert lines["p"].max() < 0.00805
     assert f"{lines['descendants in all'].sum()} of the {lines['agents then'].sum():,}" in shown

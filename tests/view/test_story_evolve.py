@@ -7,6 +7,9 @@ import pytest
 from story_page import native, stage
 from view_page import sized
 
+from hedon import Simulation, load_config
+from hedon.view.story import SCENES
+
 pytest_plugins = ("view_fixture", "story_fixture")
 
 EVOLVE = stage("evolve")
@@ -106,14 +109,20 @@ def test_its_lines_are_those_of_python_with_and_without_learning(article):
 
 
 @pytest.mark.long
-def test_in_each_world_of_the_text_the_feeling_goes_further_than_any_gene_that_does_nothing():
-    from hedon import load_config
-    from hedon.experiment.simulation import Simulation
-    from hedon.view.story import SCENES
-
-    world = Simulation(load_config(SCENES / "evolve.toml"), seeds=range(1, 9))
-    world.run(12_288)
-    for each in world.worlds:
-        feeling, _, *idle = each.agents()["genome"].mean(axis=0)
-        assert 0.195 <= feeling <= 0.5
-        assert feeling > max(map(abs, idle))
+def test_worlds_end_as_the_text_has_it():
+    config = load_config(SCENES / "evolve.toml")
+    ends = {}
+    for learns in (True, False):
+        changed = config if learns else config.with_("learning.learning_rate", 0.0)
+        simulation = Simulation(changed, seeds=range(1, 9))
+        simulation.run(12_288)
+        ends[learns] = [world.agents()["genome"] for world in simulation.worlds]
+    beyond = dict.fromkeys(ends, 0)
+    for learns, genomes in ends.items():
+        for feeling, _, *idle in (genome.mean(axis=0) for genome in genomes):
+            beyond[learns] += abs(feeling) > max(map(abs, idle))
+            assert not learns or 0.195 <= feeling <= 0.5
+    assert beyond[True] == 8
+    assert beyond[False] <= 2, "one of nine by chance"
+    left = {learns: sum(map(len, genomes)) for learns, genomes in ends.items()}
+    assert 0.28 < left[False] / left[True] < 0.4, "a third as many"

@@ -1,8 +1,8 @@
-// Begins the article where it is one file: unpacks what the page holds as text, and gives each an address.
+// Starts the article when it is a single file: unpacks the files that the page holds as text, and gives each an address.
 (async () => {
   const text = async (address) => (await fetch(address)).text();
   const script = (program) => URL.createObjectURL(new Blob([program], { type: "text/javascript" }));
-  // Opened without a server, a worker can be no module and reads no blobs, but data.
+  // Without a server, a worker cannot be a module, and can fetch data URLs but no blobs.
   const data = (blob) => new Promise((done) => {
     const reader = new FileReader();
     reader.onload = () => done(reader.result);

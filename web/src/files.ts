@@ -1,4 +1,4 @@
-// Where the other files of the page are: beside it or, if the page is one file, within it.
+// Addresses of the other files of the page: on its server or, if the page is a single file, within it.
 
 declare global {
   var hedonFiles: Record<string, string> | undefined; // addresses by name; `single.js` sets them

@@ -6,6 +6,7 @@ from pathlib import Path
 from hedon import _engine
 from hedon.error import EngineError
 from hedon.experiment.argument import DEVICES
+from hedon.text import count
 
 EMULATED = "cuda-emulated"
 """The same kernels on the processor, thread by thread: only for tests, which build its library."""
@@ -25,8 +26,8 @@ def few_worlds(worlds: int, cores: int) -> str:
     if worlds >= enough:
         return ""
     return (
-        f"With fewer than about {enough} worlds, the {cores} processor cores here are probably faster than a device: "
-        "leave --backend out."
+        f"With fewer than about {enough} worlds, the processor ({count(cores, 'core')}) is probably faster than a "
+        "device: leave --backend out."
     )
 
 

@@ -25,7 +25,7 @@ WEIGHTS = FigureKind(
 POPULATION = FigureKind(
     "population",
     "How do the worlds fare?",
-    "Where births balance deaths, the population has settled. Births fail when the world is full or when no place "
+    "When births balance deaths, the population has settled. Births fail when the world is full or when no place "
     "near the parent is free. Thin lines are worlds, thick lines are their means.",
 )
 REGIME = FigureKind(
@@ -51,13 +51,13 @@ LINEAGE = FigureKind(
     "lineage",
     "Whose descendants are left?",
     "Left: how many lines lead to those alive at the end. Right: the mean weight of these ancestors, thick, and of "
-    "all agents of the time, gray. Where they differ, agents with more or less of the weight left more descendants.",
+    "all agents of the time, gray. If they differ, agents with more or less of the weight left more descendants.",
 )
 DEMOGRAPHY = FigureKind(
     "demography",
     "What is energy worth?",
     "Children tried and mean life at constant energy, computed from the settings. The middle half of the living is "
-    "shaded: where curves are steep there, a little energy matters much. Below R0 = 1 a lineage dies out.",
+    "shaded: if the curves are steep there, a little energy matters much. Below R0 = 1 a lineage dies out.",
 )
 FIGURES = (HISTORY, WORLD, WEIGHTS, POPULATION, REGIME, SURVIVAL, SELECTION, LINEAGE, DEMOGRAPHY)
 """In the order in which a report shows them."""

@@ -26,7 +26,7 @@ from hedon.record.error import RecordError
 from hedon.record.folder import FIGURES, SUMMARY
 from hedon.record.lock import one_writer
 from hedon.record.reader import Run
-from hedon.record.snapshot import load_snapshot
+from hedon.record.snapshot import Snapshot, load_snapshot
 from hedon.report.analysis import ANALYSIS, Analysis, analyze, write_analysis
 from hedon.report.answer import Answer, drawn_file, replace_files
 from hedon.report.condition import condition_figures
@@ -154,18 +154,19 @@ def _write_summary(run: Run) -> Path:
 
 def _figures(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str, NamedFigure]]:
     """Every figure with the condition that it belongs to: what evolved, what its worlds look like, and the rest."""
-    worlds = list(_worlds(analysis, faults))
+    several = len(analysis.conditions) > 1
+    snapshots = list(_snapshots(analysis, faults))
     for condition, records in analysis.conditions.items():
-        evolved, *rest = (
-            _with_prefix(condition, named, several=len(analysis.conditions) > 1)
-            for named in condition_figures(records, analysis.tables)
-        )
-        for named in (evolved, *(drawn for of, drawn in worlds if of == condition), *rest):
-            yield condition, named
+        figures = condition_figures(records, analysis.tables)  # drawn one at a time
+        yield condition, _with_prefix(condition, next(figures), several=several)
+        for run, snapshot in (each[1:] for each in snapshots if each[0] == condition):
+            yield condition, _with_prefix(run.path.name, _world(run, snapshot), several=len(analysis.runs) > 1)
+        for named in figures:
+            yield condition, _with_prefix(condition, named, several=several)
 
 
-def _worlds(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str, NamedFigure]]:
-    """The last state of a world of each run; damaged snapshots are noted and left out."""
+def _snapshots(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str, Run, Snapshot]]:
+    """The last state of a world of each run, with the run's condition; damaged ones are noted and left out."""
     for run in analysis.runs:
         condition = _condition_of(run, analysis)
         try:
@@ -174,10 +175,13 @@ def _worlds(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str
             faults.append(fault)
             continue
         if snapshot is not None and condition is not None:
-            focus = telling_agent(snapshot)
-            colors = food_colors(snapshot.food_kinds, run.manifest.food_colors)
-            drawn = draw_world(snapshot, colors, [] if focus is None else [focus])
-            yield condition, _with_prefix(run.path.name, WORLD.drawn(drawn), several=len(analysis.runs) > 1)
+            yield condition, run, snapshot
+
+
+def _world(run: Run, snapshot: Snapshot) -> NamedFigure:
+    focus = telling_agent(snapshot)
+    colors = food_colors(snapshot.food_kinds, run.manifest.food_colors)
+    return WORLD.drawn(draw_world(snapshot, colors, [] if focus is None else [focus]))
 
 
 def _condition_of(run: Run, analysis: Analysis) -> str | None:

@@ -14,7 +14,7 @@ const COUNT_MS = 100; // between two counts
 const FADE = 3; // moments in which a creature appears, and in which the ring of one that died fades
 const EYE = 0.6; // from the middle of the face to an eye [radian]
 
-/** What a curious person's console has of it, and tests. */
+/** For the browser's console, and for tests. */
 interface Playing {
   moment: () => number;
   jump: (to: number) => void;
