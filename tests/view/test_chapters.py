@@ -29,7 +29,7 @@ def test_a_chapter_leads_to_its_moment(width, watch):
         chapters = watched.page.get_by_role("combobox", name="Chapters")
         assert chapters.bounding_box()["width"] > 100
         chapters.select_option(index=2)
-        watched.until(f"hedon.now === {steps[1]} && hedon.frame.step <= {steps[1]}")
+        watched.until(f"hedon.now === {steps[1]} && hedon.frame && hedon.frame.step <= {steps[1]}")
         chapters.evaluate("(list) => list.blur()")
         watched.get(f"hedon.seek({steps[-1] + 1})")
         watched.until(f"{LIST}.selectedIndex === {len(steps)}")
