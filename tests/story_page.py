@@ -8,7 +8,7 @@ from view_page import Watched
 from hedon import Simulation, load_config
 from hedon.view.story import SCENES
 
-STAGES = ("creature", "learning", "life", "family", "evolve", "contest", "sandbox")
+STAGES = ("creature", "learning", "family", "evolve", "contest", "sandbox")
 """The scenes that have a world."""
 
 

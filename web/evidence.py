@@ -1,4 +1,4 @@
-"""Takes the numbers of the article's scene 6 from the committed results; as a program, writes them again."""
+"""Takes the numbers of the article's scene 5 from the committed results; as a program, writes them again."""
 
 import csv
 import json

@@ -157,7 +157,7 @@ def test_the_exercises_name_what_the_article_has():
         (STORY / f"{name}.html").read_text() for name in ("creature", "learning", "family", "evolve", "contest")
     )
     buttons = set(re.findall(r"<button[^>]*>([^<]+)", page))
-    sliders = {name.strip() for name in re.findall(r"<label>([^<]+)<input", page)}
+    sliders = {name.strip() for name in re.findall(r"<label[^>]*>([^<]+)<(?:input|span)", page)}
     text = " ".join((TEACHING / "README.md").read_text().split())
     stressed = {"link", "learned", "before"}
     named = set(re.findall(r"(?<!\*)\*([^*]+)\*(?!\*)", text)) - stressed - {"Reset"}

@@ -111,80 +111,68 @@ def test_it_learns_to_eat_more_and_with_a_bad_feeling_to_sit(article):
     opened(article, "learning", address_of(watched, "learning"))
 
 
-def test_lives_end_by_chance_as_in_python_and_the_curves_are_those_of_the_model(article):
-    watched = article("life")
-    watched.page.locator("#life .guess input").fill("2000")
-    watched.page.locator("#life-one").click()
-    watched.until(f"{stage('life')}.lives().length === 1", 100)
-    watched.until("document.querySelector('#life .answer').textContent.includes('You guessed 2,000')")
-    world = native(watched, "life", "life", watched.get(f"{stage('life')}.live.last"))
-    [lived] = watched.get(f"{stage('life')}.lives()")
-    assert 0 not in world.agents()["agent_id"]
-    earlier = native(watched, "life", "life", lived - 1)
-    assert 0 in earlier.agents()["agent_id"]
-    set_knob(watched, "life", "hazard.kappa", "0.02")
-    config = load_config(SCENES / "life.toml", overrides=["hazard.kappa=0.02"])
+def test_deaths_and_births_are_marked_where_they_happen_and_counted(article):
+    """With dear steps founders starve: the page marks those that Python loses, at their last places."""
+    dear = "energy.basic_cost=0.02"
+    watched = article("family")
+    family = stage("family")
+    watched.get(f"{family}.setPlaying(false)")
+    set_knob(watched, "family", "energy.basic_cost", "0.02")
+    run_to(watched, "family", 1100)
+    watched.until(f"{family}.live.ready && {family}.live.last === 1100")
+    agents = native(watched, "family", "family", 1100, dear).agents()
+    born = watched.get(f"[...{family}.live.lives.all()].filter(({{ parent }}) => parent >= 0).length")
+    died = watched.get(f"[...{family}.live.lives.all()].filter(({{ death }}) => death >= 0).length")
+    assert died > 0
+    assert 80 + born - died == len(agents["agent_id"])
+    assert max(agents["agent_id"]) < 80 + born, "ids go on from those of the founders"
+    founders = watched.get(
+        f"[...{family}.live.lives.all()].filter(({{ parent, death }}) => parent < 0 && death < 0).length"
+    )
+    assert founders == sum(agents["parent_id"] < 0)
+    told = f"{len(agents['agent_id'])} alive; so far {born} were born and {died} died."
+    watched.until(f"document.querySelector('#family-count').textContent === '{told}'")
+    marked = watched.get(f"[{family}.marks.deaths, {family}.marks.births]")
+    assert all(1100 - 300 <= each["step"] <= 1100 for part in marked for each in part)
+    recent = {int(i) for i, step in zip(agents["agent_id"], agents["birth_step"], strict=True) if step >= 800}
+    assert {each["child"] for each in marked[1]} >= recent
+    parents = dict(zip(agents["agent_id"].tolist(), agents["parent_id"].tolist(), strict=True))
+    assert all(parents.get(each["child"], each["parent"]) == each["parent"] for each in marked[1])
+
+
+def test_the_curves_of_chances_are_those_of_the_model(article):
+    watched = article("family")
+    config = load_config(SCENES / "family.toml")
     species = next(iter(config.species.values()))
     energy = np.array([0.0, 3.0, 10.0, 40.0])
-    drawn = watched.get(f"{energy.tolist()}.map((e) => {stage('life')}.curve.hazard({stage('life')}, e, 1000))")
+    drawn = watched.get(f"{energy.tolist()}.map((e) => {stage('family')}.curve.hazard({stage('family')}, e, 1000))")
     assert drawn == pytest.approx(hazard(species.hazard, np.full(4, 1000.0), energy), rel=1e-12)
-    drawn = watched.get(f"{energy.tolist()}.map((e) => {stage('life')}.curve.birth({stage('life')}, e))")
+    drawn = watched.get(f"{energy.tolist()}.map((e) => {stage('family')}.curve.birth({stage('family')}, e))")
     assert drawn == pytest.approx(birth_rate(species.birth, energy), rel=1e-12)
 
 
-def test_a_life_keeps_its_children_and_a_link_begins_without_lives(article):
-    fertile = "birth.kappa=0.02"
-    watched = article("life", f"#scene=life&seed=5&step=400&{fertile}")
-    life, answer = stage("life"), "document.querySelector('#life .answer')"
-    watched.until("hedon.opened !== ''")
-    [lived] = watched.get(f"{life}.lives()")
-    before = native(watched, "life", "life", lived - 1, fertile, seed=5).agents()
-    after = native(watched, "life", "life", lived, fertile, seed=5).agents()
-    born = len(set(after["agent_id"]) - set(before["agent_id"]))
-    [children] = before["children"][before["agent_id"] == 0] + born
-    assert children > 1
-    told = f"It lived {lived} steps, with {children} children."
-    watched.until(f"{answer}.textContent === '{told}'")
-    watched.get(f"{life}.begin(6)")
-    watched.until(f"{life}.live.last === 0 && {life}.life()?.children === 0")
-    drawn = watched.get(f"{life}.pictures")
-    watched.until(f"{life}.pictures > {drawn} + 15")
-    assert watched.get(f"{answer}.textContent") == told, "not those of the one that lives now"
-    watched.get("(location.hash = '#scene=life&seed=7&step=50')")
-    watched.until(f"hedon.opened.includes('seed=7') && {life}.live.digest()")
-    assert watched.get(f"[{life}.lives(), {answer}.hidden]") == [[], True], "lives of another setting"
+def test_a_creature_glows_when_it_is_rewarded_and_the_second_slider_waits(article):
+    watched = article("creature")
+    creature = stage("creature")
+    assert watched.get("document.querySelector('#creature-moving').hidden")
+    watched.get(
+        """(() => {
+          const { prototype } = CanvasRenderingContext2D;
+          const { createRadialGradient } = prototype;
+          window.glows = 0;
+          prototype.createRadialGradient = function (...given) {
+            glows++;
+            return createRadialGradient.apply(this, given);
+          };
+        })()"""
+    )
+    watched.until(f"{creature}.life()?.eaten[0] > 0 && glows > 0")
+    watched.page.locator("#creature input[value=yes]").check()
+    watched.until("!document.querySelector('#creature-moving').hidden")
 
 
 @pytest.mark.long
-def test_lives_are_told_by_how_many_were_shorter(article):
-    watched = article("life")
-    life, answer = stage("life"), "document.querySelector('#life .answer').textContent"
-    set_knob(watched, "life", "hazard.kappa", "0.05")
-    watched.page.locator("#life-many").click()
-    watched.until(f"{life}.lives().length > 2", 100)
-    watched.page.locator("#life-many").click()
-    watched.until(f"!{life}.running")
-    lives = sorted(watched.get(f"{life}.lives()"))
-    half = len(lives) // 2
-    watched.until(f"{answer}.endsWith(' {half} of {len(lives)} lives were shorter than {lives[half]:,} steps.')")
-
-
-def test_a_dot_on_a_curve_can_be_dragged(article):
-    watched = article("life")
-    watched.get("document.querySelector('#life-curves').scrollIntoView({ block: 'center', behavior: 'instant' })")
-    box = watched.page.locator("#life-curves").bounding_box()
-    watched.page.mouse.move(box["x"] + 47, box["y"] + 60)
-    watched.page.mouse.down()
-    watched.page.mouse.move(box["x"] + 47, box["y"] + 30)
-    watched.page.mouse.up()
-    watched.until(f"{stage('life')}.changes.has('hazard.kappa')")
-    kappa = watched.get(f"{stage('life')}.value('hazard.kappa')")
-    assert kappa > 0.01
-    assert watched.get("document.querySelector('#life input[data-path=\"hazard.kappa\"]').value") == str(kappa)
-
-
-@pytest.mark.long
-def test_a_family_has_one_color_and_children_have_the_feelings_of_their_parents(article):
+def test_colors_are_feelings_and_children_have_those_of_their_parents(article):
     watched = article("family")
     watched.get(f"{stage('family')}.setPlaying(false)")
     run_to(watched, "family", 400)
@@ -196,15 +184,15 @@ def test_a_family_has_one_color_and_children_have_the_feelings_of_their_parents(
     click_agent(watched, some)
     watched.until(f"document.querySelector('#family-card').textContent.includes('Creature {some}')")
     watched.until("document.querySelector('#family-card').textContent.includes('nothing that the parent had learned')")
-    colored = watched.get(
+    colors = watched.get(
         f"""(() => {{
           const {{ frame, live, camera }} = {stage("family")};
-          return [...frame.id].map((id, i) => [live.lives.founder(id) === live.lives.founder({some}),
-            camera.coloring.value(live.lives.get(id), frame, i)]);
+          const lives = [...frame.id].map((id) => live.lives.get(id));
+          return lives.map((life, i) => [life.genome[0], camera.coloring.value(life, frame, i)]);
         }})()"""
     )
-    assert {kin for kin, _ in colored} == {True, False}
-    assert all((color == 3) == kin for kin, color in colored)
+    assert len(colors) > 60
+    assert all(feeling == shown for feeling, shown in colors)
     watched.page.locator("#family input[value=skill]").check()
     watched.until("document.querySelector('#family .answer').textContent.startsWith('Only what feels good')")
     address = address_of(watched, "family")

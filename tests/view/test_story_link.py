@@ -91,7 +91,7 @@ def test_a_link_and_its_letters_stand_together(width, article):
 
 
 def test_no_scene_is_wider_than_a_small_phone(article):
-    watched = article("life", viewport={"width": 320, "height": 640})
+    watched = article("family", viewport={"width": 320, "height": 640})
     assert watched.get("document.documentElement.scrollWidth") == 320
 
 

@@ -29,7 +29,6 @@ def unseen(article, scene, shown):
     ("scene", "button", "told"),
     [
         ("learning", "#learning-run", "Learning: round "),
-        ("life", "#life-many", "Life "),
         ("contest", "#contest-one", "Begin"),
     ],
 )
@@ -42,7 +41,9 @@ def test_a_world_runs_and_tells_so_though_its_arena_was_never_seen(scene, button
     if scene == "contest":
         assert watched.page.locator(button).is_disabled()
         watched.until("document.querySelector('#contest-score').textContent.startsWith('World of seed 1: step ')")
-    assert not watched.get(f"{stage(scene)}.pictures")
+        watched.until(f"{stage(scene)}.seen")  # the page goes there
+    else:
+        assert not watched.get(f"{stage(scene)}.pictures")
 
 
 def test_four_more_worlds_cannot_be_asked_for_before_the_first(article):
@@ -56,15 +57,15 @@ def test_a_guess_is_answered_and_a_chart_is_drawn_beside_an_arena_out_of_sight(a
     scroll_to(watched, "#creature .guess", "end")
     watched.page.locator("#creature input[value=yes]").check()
     watched.until("!document.querySelector('#creature .answer').hidden")
-    chart = "document.querySelector('#life-curves')"
-    scroll_to(watched, "#life-curves", "start")
+    chart = "document.querySelector('#contest-map')"
+    scroll_to(watched, "#contest-map", "end")
     drawn = f"{chart}.getContext('2d').getImageData(0, 0, {chart}.width, {chart}.height).data.join()"
-    watched.until(f"{stage('life')}.live?.ready && {chart}.width === {chart}.clientWidth && {drawn}.match(/[1-9]/)")
-    assert not watched.get(f"{stage('life')}.seen")
+    watched.until(f"{stage('contest')}.live?.ready && {chart}.width === {chart}.clientWidth && {drawn}.match(/[1-9]/)")
+    assert not watched.get(f"{stage('contest')}.seen")
     before = watched.get(drawn)
-    set_knob(watched, "life", "birth.kappa", "0.002")
+    set_knob(watched, "contest", "species.blue.reward.meal_coef", "7")
     watched.until(f"{drawn} !== {before!r}")
-    assert not watched.get(f"{stage('life')}.pictures")
+    assert not watched.get(f"{stage('contest')}.pictures")
 
 
 def test_a_scene_that_moves_by_itself_does_so_also_if_its_words_came_first(article):

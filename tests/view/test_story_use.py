@@ -108,3 +108,18 @@ def test_what_fingers_touch_is_large_enough(article):
       .map((each) => [each.textContent || each.id || each.type, each.getBoundingClientRect().height])
       .filter(([, height]) => height < 44)""")
     assert small == []
+
+
+def test_a_handout_has_a_picture_in_each_scene_and_a_line_for_each_answer(article):
+    watched = article("creature")
+    watched.get("void (window.print = () => (window.printed = true))")
+    watched.page.locator("#print").click()
+    watched.until("window.printed", 120)
+    sizes = watched.get("[...document.querySelectorAll('canvas.world')].map((each) => each.toDataURL().length)")
+    assert len(sizes) == 6
+    assert min(sizes) > 5_000, "something is drawn in each"
+    watched.page.emulate_media(media="print")
+    asked = ["#creature .guess", "#learning .guess", "#family .guess", "#evolve .words", "#contest .words"]
+    lines = f"{asked}.map((each) => getComputedStyle(document.querySelector(each), '::after').content)"
+    assert watched.get(lines) == ['"Your answer:"'] * 5
+    assert not watched.page.locator("#contest-one").is_visible()

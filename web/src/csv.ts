@@ -18,10 +18,10 @@ export function csvOf(source: Source, seed: number, lives: Life[]): string {
   return [names.join(","), ...lives.map(line)].join("\n") + "\n";
 }
 
-/** Lets the browser save a text as a file. */
-export function save(name: string, text: string): void {
+/** Lets the browser save a text, a picture or a video as a file. */
+export function save(name: string, content: string | Blob): void {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  link.href = URL.createObjectURL(typeof content === "string" ? new Blob([content], { type: "text/plain" }) : content);
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);

@@ -59,16 +59,6 @@ export class Chart {
     ink.setLineDash([]);
   }
 
-  /** What lies between two lines, from left to right, shaded. */
-  area(low: [number, number][], high: [number, number][], color: string): void {
-    const { ink } = this;
-    ink.beginPath();
-    for (const [x, y] of [...low, ...[...high].reverse()]) ink.lineTo(this.px(x), this.py(y));
-    [ink.fillStyle, ink.globalAlpha] = [color, 0.35];
-    ink.fill();
-    ink.globalAlpha = 1;
-  }
-
   dot(x: number, y: number, color: string, radius = 4): void {
     this.ink.beginPath();
     this.ink.arc(this.px(x), this.py(y), radius, 0, 2 * Math.PI);
@@ -109,18 +99,12 @@ export class Chart {
   }
 
   /** The place of an event, within the axes. */
-  place(event: PointerEvent): [number, number] {
+  place(event: MouseEvent): [number, number] {
     const box = this.canvas.getBoundingClientRect();
     const { x, y } = this;
     const across = (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
     const up = 1 - (event.clientY - box.top - TOP) / (box.height - TOP - BOTTOM);
     return [within(x.low + across * (x.high - x.low), x), within(y.low + up * (y.high - y.low), y)];
-  }
-
-  /** Pixels of the page of a place. */
-  page(x: number, y: number): [number, number] {
-    const box = this.canvas.getBoundingClientRect();
-    return [box.left + this.px(x), box.top + this.py(y)];
   }
 
   private px(x: number): number {

@@ -10,6 +10,8 @@ import { commandsOf, ofKeys, toward, Track } from "./steer";
 export const ONE_COLOR: Coloring = { name: "one", label: "a creature", scale: "distinct", value: () => 0 };
 const STROLL = 1500; // steps that it shows by itself how it moves
 const ENOUGH = 5; // meals
+const GLOW = 3; // radii
+const LASTS = 60; // steps in which a feeling fades to a third
 const FLAME = 0.09; // units of a motor's flame per unit of force
 
 export function creature(section: HTMLElement, worlds: Worlds): Scene {
@@ -23,8 +25,11 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   let strolling = !CALM.matches;
   let steered = false; // whether a reader, or a link, has steered this world
   let command = ".";
+  let felt = 0; // reward lately
+  let rewarded = 0; // in all, at the last moment
   const guess = bindGuess(section);
   const hint = section.querySelector<HTMLElement>(".hint")!;
+  const second = section.querySelector<HTMLElement>("#creature-moving")!; // a slider for those who know the first
   const told = (name: string) => section.querySelector<HTMLElement>(`#creature-${name}`)!;
 
   const takeOver = () => {
@@ -71,15 +76,22 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   };
   stage.onBegin = () => {
     [track, command, replay, steered] = [new Track(), ".", [], false];
+    [felt, rewarded] = [0, 0];
   };
   stage.onMoment = ({ done }) => {
     track.add(command, done);
     stage.edited = track.runs.some(([each]) => each !== ".");
     if (track.fits) stage.notes.set("steer", String(track));
     else stage.notes.delete("steer");
+    const reward = stage.life()?.reward ?? 0;
+    felt = felt * Math.exp(-done / LASTS) + reward - rewarded;
+    rewarded = reward;
     if (stage.running && replay.length > 0) stage.move(); // at once: it may be hundreds of short commands
   };
-  stage.onPicture = () => drawMotors(stage, commands[command]!, [least, most]);
+  stage.onPicture = () => {
+    drawMotors(stage, commands[command]!, [least, most]);
+    drawGlow(stage, felt);
+  };
   stage.onWords = () => {
     const said = strolling ? "strolls" : stage.aim > stage.live.last ? "replays" : steered ? "" : "waits";
     hint.hidden = said === "";
@@ -91,6 +103,7 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
     told("meals").textContent = show(meals);
     told("reward").textContent = show(life.reward, 2);
     told("meals").classList.toggle("reached", meals >= ENOUGH && !strolling);
+    if (stage.changes.size > 0 || guess.value() || (meals >= ENOUGH && !strolling)) second.hidden = false;
     if (guess.value()) guess.answer("Yes. Let moving feel like 5 and drive in circles: reward grows without a meal, while energy falls.");
   };
 
@@ -148,6 +161,25 @@ function releaseFocus(section: HTMLElement): void {
   };
   section.addEventListener("click", (event) => event.detail > 0 && setTimeout(release)); // a label gives the focus after it
   section.addEventListener("pointerdown", () => document.addEventListener("pointerup", () => setTimeout(release), { once: true }));
+}
+
+/** What it feels, as a glow around it: warm if that is good, cold if bad. */
+function drawGlow(stage: Stage, felt: number): void {
+  const { frame, ink, arena } = stage;
+  const strength = Math.min(Math.abs(felt), 1);
+  if (!frame || frame.id.length === 0 || strength < 0.02) return;
+  const [x, y] = stage.at(frame.x[0]!, frame.y[0]!);
+  const radius = stage.live.layout.species[0]!.radius * arena.scene.zoom * (ink.canvas.clientWidth / arena.scene.canvas.width);
+  const glow = ink.createRadialGradient(x, y, radius, x, y, GLOW * radius);
+  glow.addColorStop(0, styleColor(felt > 0 ? "--flame" : "--blue"));
+  glow.addColorStop(1, "transparent");
+  ink.globalAlpha = 0.7 * strength;
+  ink.fillStyle = glow;
+  ink.beginPath();
+  ink.arc(x, y, GLOW * radius, 0, 2 * Math.PI);
+  ink.arc(x, y, radius, 0, 2 * Math.PI, true);
+  ink.fill();
+  ink.globalAlpha = 1;
 }
 
 /** Both motors as flames behind the body: the longer, the stronger. */

@@ -1,4 +1,4 @@
-// Scene 5: a feeling evolves while one looks, beside genes that do nothing; again with other luck, and without learning.
+// Scene 4: a feeling evolves while one looks, beside genes that do nothing; again with other luck, and without learning.
 import { diverging, type Coloring } from "../color";
 import { show, styleColor } from "../element";
 import type { Life } from "../types";

@@ -1,32 +1,33 @@
-// Scene 4: many agents; a family in one color, and what children have of their parents.
-import type { Coloring } from "../color";
+// Scene 3: many agents that die and have children, and what children have of their parents.
+import { type Coloring, diverging } from "../color";
 import { counted, element, show, styleColor } from "../element";
 import type { Life } from "../types";
+import { birth, chances, hazard } from "./chance";
 import { Chart } from "./chart";
 import { bindGuess } from "./guess";
+import { bindKnobs } from "./knob";
+import { Marks } from "./marks";
 import { openStage, type Scene, type Worlds } from "./scene";
 import { Stage } from "./stage";
 
-const ORANGE = 3; // its place among the distinct colors
+const COLORED = 1.5; // feelings beyond have the color of this one
 const RANGE = 3; // of the plot of feelings
 const FIRST = 39; // the agent that is chosen at first: in the first world its family grows
 
 export function family(section: HTMLElement, worlds: Worlds): Scene {
-  let root = -1;
-  const coloring: Coloring = {
-    name: "family",
-    label: "the chosen family",
-    scale: "distinct",
-    value: (life) => (life && root >= 0 && stage.live.lives.founder(life.id) === root ? ORANGE : NaN),
-  };
-  const stage: Stage = new Stage(section, worlds.family!, { scene: "family", autoplay: true, speed: 4, coloring });
-  const gene = (name: string) => stage.world.layout.genes.findIndex((each) => each.name === name);
+  const gene = (name: string) => worlds.family!.layout.genes.findIndex((each) => each.name === name);
   const [meal, moving] = [gene("w_normal"), gene("w_action")];
+  let root = -1;
+  const coloring: Coloring = { name: "feeling", label: "how food feels", scale: "diverging", low: -COLORED, high: COLORED, value: (life) => life?.genome[meal] ?? NaN };
+  const stage: Stage = new Stage(section, worlds.family!, { scene: "family", autoplay: true, speed: 4, coloring });
   const chart = new Chart(
-    section.querySelector("canvas.chart")!,
+    section.querySelector("#family-dots")!,
     { low: -RANGE, high: RANGE, label: "how a meal feels to the parent" },
     { low: -RANGE, high: RANGE, label: "to the child" },
   );
+  const drawChances = chances(section.querySelector("#family-chances")!);
+  const count = section.querySelector<HTMLElement>("#family-count")!;
+  const marks = new Marks(stage, (life) => diverging(life.genome[meal]!, COLORED));
   const guess = bindGuess(section);
   const card = section.querySelector<HTMLElement>("#family-card")!;
   const number = section.querySelector<HTMLInputElement>("#family-number")!;
@@ -53,17 +54,25 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     });
   stage.onBegin = () => {
     choose(FIRST);
+    marks.clear();
   };
+  stage.onMoment = (moment) => marks.note(moment);
+  stage.onPicture = () => marks.draw();
   stage.onWords = () => {
     const known = pairs();
     chart.begin();
     chart.line([[-RANGE, -RANGE], [RANGE, RANGE]], styleColor("--rule"), 1);
-    const [plain, mark] = [styleColor("--before"), styleColor("--family")];
+    const [plain, mark] = [styleColor("--before"), styleColor("--kin")];
     const within = (value: number) => Math.min(Math.max(value, -RANGE), RANGE);
     const dots = known.map(([child, parent]) => ({ child, parent, kin: root >= 0 && stage.live.lives.founder(child.id) === root }));
     for (const { child, parent, kin } of dots.sort((a, b) => Number(a.kin) - Number(b.kin))) {
       chart.dot(within(parent.genome[meal]!), within(child.genome[meal]!), kin ? mark : plain, kin ? 4 : 3);
     }
+    const all = [...stage.live.lives.all()];
+    const died = all.filter(({ death }) => death >= 0).length;
+    const born = all.filter(({ parent }) => parent >= 0).length;
+    count.textContent = `${show(all.length - died)} alive; so far ${born} were born and ${died} died.`;
+    drawChances(stage);
     const own = stage.life();
     card.replaceChildren(...(own ? about(own) : [element("p", { text: "Click or tap a creature, or take the next child." })]));
     next.disabled = children().length === 0;
@@ -103,13 +112,14 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
   });
   next.addEventListener("click", chooseNext);
   number.addEventListener("change", () => choose(stage.life(number.valueAsNumber) ? number.valueAsNumber : stage.chosen));
+  const read = bindKnobs(section, stage, () => stage.begin(), { "energy.basic_cost": (value) => `${show(value)} energy` });
   section.addEventListener("reset", () => guess.answer(""));
-  Object.assign(stage, { choose, pairs });
+  Object.assign(stage, { choose, pairs, marks, curve: { hazard, birth } });
   return {
     section,
     stage,
     open: async (place) => {
-      if ((await openStage(stage, place)) && place.notes.has("agent")) choose(Number(place.notes.get("agent")));
+      if ((await openStage(stage, place, read)) && place.notes.has("agent")) choose(Number(place.notes.get("agent")));
     },
   };
 }

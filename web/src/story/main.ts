@@ -10,13 +10,13 @@ import { evolve } from "./evolve";
 import { family } from "./family";
 import { hero } from "./hero";
 import { learning } from "./learning";
-import { life } from "./life";
 import { type Place, placeOf } from "./link";
 import { sandbox } from "./sandbox";
 import type { Scene, Worlds } from "./scene";
 import type { Stage } from "./stage";
 
-const MAKERS: Record<string, (section: HTMLElement, worlds: Worlds) => Scene> = { creature, learning, life, family, evolve, contest, sandbox };
+const MAKERS: Record<string, (section: HTMLElement, worlds: Worlds) => Scene> = { creature, learning, family, evolve, contest, sandbox };
+const PRINTED = 100; // steps of a world before it is printed
 const scenes: Record<string, Scene> = {};
 const story = { scenes, pictures: 0, opened: "" };
 Object.assign(window, { hedon: story }); // for a curious person's console, and for tests
@@ -103,6 +103,18 @@ by("theme").addEventListener("click", () => {
 for (const { source, command } of Object.values(evidence)) by("source-list").append(element("li", {}, element("code", { text: source }), ` from ${command}`));
 
 document.addEventListener("visibilitychange", () => Object.values(scenes).forEach(({ stage }) => stage?.unseen()));
+
+/** Prints the article with a picture in each scene, of worlds that no reader has begun too. */
+async function print(): Promise<void> {
+  for (const { stage } of Object.values(scenes)) {
+    if (!stage) continue;
+    stage.ensure();
+    if (stage.live.last === 0) await stage.runTo(PRINTED);
+    stage.show();
+  }
+  window.print();
+}
+by("print").addEventListener("click", () => void print());
 
 /** The recording at the top; without it the picture stays, and the article too. */
 function open(): void {

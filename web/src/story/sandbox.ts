@@ -1,4 +1,4 @@
-// Scene 7: other worlds to change; pictures, videos, configs and links of them.
+// After the last scene: other worlds to change; pictures, videos, configs and links of them.
 import { type Coloring, ramp } from "../color";
 import { save } from "../csv";
 import { by, styleColor } from "../element";
@@ -74,7 +74,7 @@ export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
     const draw = () => stage.arena.draw(stage.live, stage.frame, coloring, stage.chosen);
     scene.enlarged = Math.max(1, PICTURE_WIDTH / scene.canvas.width);
     draw();
-    scene.canvas.toBlob((blob) => blob && saveBlob(`${name}.png`, blob)); // of this moment
+    scene.canvas.toBlob((blob) => blob && save(`${name}.png`, blob)); // of this moment
     scene.enlarged = 1;
     draw();
   });
@@ -104,7 +104,7 @@ function bindVideo(made: HTMLButtonElement, stage: Stage, name: () => string): v
     const parts: Blob[] = [];
     recorder.ondataavailable = ({ data }) => parts.push(data);
     recorder.onstop = () => {
-      saveBlob(`${name()}.${recorder.mimeType.includes("mp4") ? "mp4" : "webm"}`, new Blob(parts, { type: recorder.mimeType }));
+      save(`${name()}.${recorder.mimeType.includes("mp4") ? "mp4" : "webm"}`, new Blob(parts, { type: recorder.mimeType }));
       [made.disabled, made.textContent] = [false, "Record video"];
     };
     [made.disabled, made.textContent] = [true, "Recording 8 s"];
@@ -112,10 +112,4 @@ function bindVideo(made: HTMLButtonElement, stage: Stage, name: () => string): v
     recorder.start();
     setTimeout(() => recorder.stop(), VIDEO_MS);
   });
-}
-
-function saveBlob(name: string, blob: Blob): void {
-  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }

@@ -211,6 +211,13 @@ export class Stage {
     this.words(); // also where the arena is out of sight: a chart, a button or an answer may be in it
   }
 
+  /** Draws the newest moment, wherever the arena is. */
+  show(): void {
+    this.frame = this.live.around(Infinity).before;
+    this.draw();
+    this.words();
+  }
+
   private draw(): void {
     const { ink, arena } = this;
     arena.draw(this.live, this.frame, this.camera.coloring, this.chosen);

@@ -1,0 +1,26 @@
+// A result of the contest as a picture for others: what happened in large letters, above the arena and the map.
+import { save } from "../csv";
+import { styleColor } from "../element";
+
+const [WIDTH, HEIGHT] = [1200, 630]; // as other sites show pictures of links
+const EDGE = 40;
+const TOP = 150; // of the pictures
+
+export function saveResult(headline: string, pictures: HTMLCanvasElement[]): void {
+  const card = document.createElement("canvas");
+  [card.width, card.height] = [WIDTH, HEIGHT];
+  const ink = card.getContext("2d")!;
+  ink.fillStyle = styleColor("--page");
+  ink.fillRect(0, 0, WIDTH, HEIGHT);
+  ink.fillStyle = styleColor("--ink");
+  ink.font = "700 64px Georgia, serif";
+  ink.fillText(headline, EDGE, 90);
+  ink.font = "24px system-ui, sans-serif";
+  ink.fillText(`Where do rewards come from? ${location.protocol === "file:" ? "" : location.host + location.pathname}`, EDGE, HEIGHT - 24);
+  const width = (WIDTH - EDGE * (pictures.length + 1)) / pictures.length;
+  pictures.forEach((picture, i) => {
+    const scale = Math.min(width / picture.width, (HEIGHT - TOP - 70) / picture.height);
+    ink.drawImage(picture, EDGE + i * (width + EDGE), TOP, picture.width * scale, picture.height * scale);
+  });
+  card.toBlob((blob) => blob && save("beat-evolution.png", blob));
+}
