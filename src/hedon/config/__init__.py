@@ -1,4 +1,4 @@
-"""The settings of a run, each with meaning, unit, range and source; read from presets, files and overrides."""
+"""Settings of a run, each with its meaning, unit, range and source, loaded from presets, files and overrides."""
 
 from hedon.config.config import Config, validated
 from hedon.config.dump import diff, digest, dump_toml, file_leaves, flatten

@@ -1,8 +1,8 @@
-"""Channels: what can be known of an agent in a step, one number each.
+"""Channels: the numbers that can be known about an agent in a step.
 
-What an agent observes beside rays and touch, what it is paid for, what opens the gate of its reward, and what a rule of
-the caller gets, are lists of channels. The engine gets them as data and reads all of them in one function,
-`channel_value` in `engine/world/channel.h`.
+Lists of channels define what an agent observes besides rays and touch, what it is rewarded for, what opens the gate of
+its reward, and what a user's rule receives. The engine gets these lists as data and reads every channel in one
+function, `channel_value` in `engine/world/channel.h`.
 """
 
 import math
@@ -17,15 +17,15 @@ from hedon.config.type import asked_for, chosen, diet, seen, smelled
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where the engine reads channels.
+    """A source that the engine reads channels from.
 
     Attributes:
-        name: Of its channels; `{}` stands for what there are several of.
-        meaning: The same as a phrase.
-        unit: Of its numbers.
-        of: What there are several of: names, or a word of `SEVERAL`.
-        of_step: Whether it is known only when a step is done: who observes it gets that of the step before.
-        limits: The least and the greatest number, where they are known; what a store holds has its own.
+        name: Pattern of its channels' names; `{}` stands for what it has several of.
+        meaning: Pattern of their descriptions, as a phrase.
+        unit: Unit of their numbers.
+        of: What the source has several of: names, or a key of `SEVERAL`.
+        of_step: Whether the number is known only after the step, so that an observation has the previous step's.
+        limits: Minimum and maximum, if known; the limits of a store's level come from the store.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Source:
 
     @property
     def several(self) -> str:
-        """What there are several of, as the engine calls it: a word, or "one" or "two" of them."""
+        """The engine's word for what the source has several of: a key of `SEVERAL`, "one" or "two"."""
         return self.of if isinstance(self.of, str) else ("one", "two")[len(self.of) - 1]
 
 
@@ -55,7 +55,7 @@ SEVERAL: dict[str, tuple[tuple[str, ...], str]] = {
     "mates": (("",), 'with birth.mating = "pairs"'),
     "drive": (("",), "with reward.drive_reduction_coef"),
 }
-"""Words for what sources have several of, or only sometimes: how it shows in names, and where it is."""
+"""For sources with several channels, or only in some worlds: the placeholders in names, and when they exist."""
 _SHARE, _CIRCLE, _COUNT = (0.0, 1.0), (-1.0, 1.0), (0.0, math.inf)
 SOURCES = {
     "velocity": Source("velocity_{}", "velocity along {}", "u/s", ("x", "y")),
@@ -108,31 +108,31 @@ SOURCES = {
     "alive": Source("alive", "living agents of its species", limits=_COUNT),
     "one": Source("one", "1 in every step", limits=(1.0, 1.0)),
 }
-"""Where the engine reads channels, by its names of the sources."""
+"""Sources of channels by their names in the engine."""
 LAST = "last"
-"""The source of what was known of the step before: the engine keeps it for the next observation."""
+"""Source of what was known after the previous step; the engine keeps it for the next observation."""
 QUERIED = tuple(name for name, source in SOURCES.items() if source.of in ("queries", "companies"))
-"""The sources of what queries about neighbors find."""
+"""Sources of the results of neighbor queries."""
 RECORDED = (
     *(("age", 0), ("store_before", 0), ("store", 0), ("moved", 0), ("nearness", 0), ("force", 0), ("force", 1)),
     *(("position", 0), ("position", 1), ("step", 0), ("alive", 0)),
 )
-"""What a rule gets of every agent beside its reward's inputs, its genes, its memory and its other stores, by source."""
+"""Channels that every rule receives, as (source, index), besides reward inputs, genes, memory and further stores."""
 
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """One number of an agent.
+    """One number that describes an agent.
 
     Attributes:
-        name: Its column.
+        name: Its column in the records.
         source: One of `SOURCES`, or `LAST`.
-        index: Which number of the source.
-        scale: The number is divided by this.
-        place: The path of the scale in the species, "" where no setting says it.
-        meaning: What it is, as a phrase.
-        unit: Of the number, before it is divided.
-        limits: The least and the greatest number, before it is divided.
+        index: Position among the source's channels.
+        scale: Divisor of the number.
+        place: Path of the scale in the species; "" if no setting gives it.
+        meaning: Description, as a phrase.
+        unit: Unit before division by the scale.
+        limits: Minimum and maximum before division by the scale.
     """
 
     name: str
@@ -146,16 +146,16 @@ class Channel:
 
     @property
     def of_step(self) -> bool:
-        """Whether it is known only when a step is done."""
+        """Whether the number is known only after the step."""
         return self.source != LAST and SOURCES[self.source].of_step
 
 
 Channels = dict[tuple[str, int], Channel]
-"""All channels of a species, each by its source and which number of it that is, in the order of `SOURCES`."""
+"""All channels of a species by (source, index), in the order of `SOURCES`."""
 
 
 def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
-    """Every channel of a species. Two can have one name, where kinds or stores are called so."""
+    """All channels of a species. Names of food kinds or stores can make two channels share a name."""
     eaten, smells = diet(config, species), smelled(config, species.sensor.smells)
     alive = {name for name, query in species.neighbor.items() if {*asked_for(config, query.of)} & config.species.keys()}
     names: dict[str, Sequence[str | None]] = {
@@ -186,10 +186,10 @@ def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
 
 
 def season_place(config: Settings, species: SpeciesConfig) -> str:
-    """Where the length of a year stands: in the species, or else in the config with the first schedule that repeats.
+    """Finds the setting that gives the length of a year: the species' own, or that of the first repeating schedule.
 
     Returns:
-        A path in the config if it begins with "food." or "obstacle.", else one in the species; "" for no year.
+        A path in the config if it begins with "food." or "obstacle.", else a path in the species; "" without a year.
     """
     if species.sensor.season_period:
         return "sensor.season_period"
@@ -207,12 +207,12 @@ def season_place(config: Settings, species: SpeciesConfig) -> str:
 
 
 def called(known: Channels, name: str) -> list[Channel]:
-    """The channels of a name: one, unless it is not known, or kinds or stores make two of them."""
+    """Channels with this name: one, none if the name is unknown, or two if a food kind or store repeats a name."""
     return [channel for channel in known.values() if channel.name == name]
 
 
 def plain_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel, ...]:
-    """What a species observes beside rays and touch without `sensor.observes`, in order: model page, section 5."""
+    """Channels observed besides rays and touch if `sensor.observes` is empty, in order: model page, section 5."""
     sensor, raw = species.sensor, species.sensor.scaling == "raw"
 
     def scaled(source: str, index: int, scale: float, place: str) -> Channel:
@@ -233,7 +233,7 @@ def plain_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel, ..
 
 
 def observed_channels(species: SpeciesConfig, known: Channels) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
-    """What a species observes beside rays and touch, in order, and what of a step is kept for it until the next."""
+    """Channels observed besides rays and touch, in order, and those stored during a step for the next observation."""
     added: list[Channel] = []
     last: list[Channel] = []
     for name, scale in species.sensor.observes.items():
@@ -246,10 +246,10 @@ def observed_channels(species: SpeciesConfig, known: Channels) -> tuple[tuple[Ch
 
 
 def recorded_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel, ...]:
-    """What a rule gets of every agent beside its reward's inputs, its genes and its memory, in order.
+    """Channels that a rule receives besides inputs of the reward, genes and memory, in order.
 
-    Where there are other stores than energy, each is there as it was at the start of the step and as it is; then what
-    each query about neighbors found.
+    Each store other than energy appears twice, at the start of the step and now; the results of neighbor queries
+    follow.
     """
     stores = [known[source, i + 1] for i in range(len(species.store)) for source in ("store_before", "store")]
     asked = (each for each in known.values() if each.source in QUERIED)

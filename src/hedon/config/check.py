@@ -1,4 +1,4 @@
-"""Contradictions in a world: settings that are allowed one by one, but not together."""
+"""Contradictions in a world: settings that are valid one by one but not together."""
 
 import math
 import re
@@ -17,13 +17,13 @@ from hedon.config.schema.settings import PROVENANCE, Settings
 from hedon.config.schema.store import ENERGY
 
 MIN_WALL = 0.01
-"""Length of the shortest wall whose direction float32 can still hold [u]."""
+"""Length of the shortest wall whose direction float32 can represent [u]."""
 RESERVED_KINDS = ("agent", "wall", "obstacle", "action")
-"""Names with another meaning in sensor channels or in the columns of records."""
+"""Names that have another meaning in sensor channels or in columns of the records."""
 
 
 def contradictions(config: Settings) -> list[Problem]:
-    """Every contradiction in a config."""
+    """Returns all contradictions in a config."""
     check = Check(config)
     _names(check)
     _arena(check, config.arena)
@@ -35,7 +35,7 @@ def contradictions(config: Settings) -> list[Problem]:
 
 
 def _names(check: Check) -> None:
-    for field in PROVENANCE:  # folders of runs are named by them
+    for field in PROVENANCE:  # run folders are named after them
         rule = 'must have only letters, digits, "-", "_" and ".", at most 80 of them, and not begin with a "."'
         check.match(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}", field, rule)
     for name, what in (("founders", "table of founders"), ("networks", "file of networks")):
@@ -62,7 +62,7 @@ def _corners_fit(arena: ArenaConfig) -> bool:
 
 
 def _is_outside(arena: ArenaConfig, x: float, y: float) -> bool:
-    """Whether a point lies outside the outline. False if the outline itself is wrong, which has its own message."""
+    """Whether a point is outside the outline. False for an invalid outline, which is reported separately."""
     return _corners_fit(arena) and not is_inside(arena, x, y)
 
 
@@ -75,7 +75,7 @@ def _obstacles(check: Check, config: Settings) -> None:
     if obstacle.cell > 0:
         _grid(check, config)
         return
-    # Circles around obstacles do not overlap when they are placed; random placement stops long before they fill it.
+    # Circumscribed circles must not overlap; random placement fails long before the circles fill the arena.
     around = obstacle.max_side / (2 * math.sin(math.pi / obstacle.corners))
     area, room = math.pi * around**2, MAX_COVERAGE * config.arena.width * config.arena.height
     rule = f"the arena has room for {math.floor(room / area)} with sides of {obstacle.max_side:g}"
@@ -144,7 +144,7 @@ def _placement(check: Check, arena: ArenaConfig, food: FoodConfig, path: str) ->
 
 
 def _tables(check: Check, section: Any, path: str) -> None:
-    """Tables whose names are given have no others, and schedules can be followed."""
+    """Reports invalid names in tables with a fixed set of names, and schedules that cannot be followed."""
     for place, inner, own in inner_sections(section, path):
         name = place.rpartition(".")[2]
         if inner.names and name not in inner.names:

@@ -1,4 +1,4 @@
-"""Contradictions in what makes a species, and between the species of a world."""
+"""Contradictions within a species and between the species of a world."""
 
 import math
 import re
@@ -26,25 +26,25 @@ RESERVED_STORES = (
     *("world", "seed", "kind", "id"),
     *(source.name for source in SOURCES.values() if "{}" not in source.name),
 )
-"""Names of other numbers of an agent, which no store can have."""
+"""Names of an agent's other numbers, which no store may take."""
 NAME = r"[a-z][a-z0-9_]{0,31}"
-"""What kinds of food, species, stores, queries, and genes for rules may be called."""
+"""Pattern of the names of food kinds, species, stores, queries, and genes for rules."""
 NAME_RULE = "a name must have only a-z, 0-9 and _, start with a letter, have at most 32 characters"
 RESERVED_STARTS = ("eaten_", "w_", "g_", "neutral_", "extra_", "set_point")
-"""How names of meals and genes begin in the records."""
+"""Prefixes of the columns of meals and genes in the records."""
 CHANNEL_SETTINGS = {
     "near_": "[neighbor.NAME] asks who is near, and gives NAME_count",
     "season_": "sensor.season_period gives a year where no schedule does",
     "see_": "sensor.sees says what it sees",
     "smell_": "sensor.smells says what it smells",
 }
-"""The settings that some channels need, by how the names of these begin."""
+"""Settings that some channels require, by the prefix of the channel's name."""
 MAX_COVERAGE = 0.45
-"""Share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
+"""Largest share of the arena that founders may cover; random placement without overlap stops at 0.547 (Feder 1980)."""
 
 
 def check_species(check: Check) -> None:
-    """Finds what is wrong with a species, or with several together."""
+    """Adds the problems of each species, and those between species."""
     config: Settings = check.config
     _names(check, config)
     for name, species in config.species.items():
@@ -56,7 +56,7 @@ def check_species(check: Check) -> None:
         _read(check, config, species, path)
         before = len(check.problems)
         _channels(check, config, species, path)
-        if len(check.problems) == before and not check.has(f"{path}genome."):  # else there is no layout
+        if len(check.problems) == before and not check.has(f"{path}genome."):  # otherwise the layout is undefined
             _genes(check, config, species, path)
             _rules(check, config, name, path)
     if config.species:
@@ -91,7 +91,7 @@ def _body(check: Check, config: Settings, species: SpeciesConfig, path: str) -> 
 
 
 def _stride(config: Settings) -> float:
-    """The farthest that a body moves in a substep [u]: the cap of its speed holds for each axis."""
+    """Longest distance that a body moves in a substep [u]; the speed cap applies to each axis."""
     return math.sqrt(2) * config.physics.max_speed * config.physics.dt
 
 
@@ -164,7 +164,7 @@ def _known(check: Check, path: str, names: Sequence[str], known: Sequence[str]) 
 
 
 def _read(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
-    """Something reads the genes for rules, and the queries about neighbors."""
+    """Reports genes for rules and neighbor queries that nothing reads."""
     ruled = any(getattr(species, use).rule for use in RULE_USES)
     rules = " or ".join(f"{use}.rule" for use in RULE_USES)
     for section, table in (("genome.extra", species.genome.extra), ("neighbor", species.neighbor)):
@@ -203,7 +203,7 @@ def _rules(check: Check, config: Settings, name: str, path: str) -> None:
 
 
 def _channels(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
-    """Every name of a channel is one that there is."""
+    """Reports unknown channel names."""
     known, reward = known_channels(config, species), species.reward
     names = list(dict.fromkeys(channel.name for channel in known.values()))
 
@@ -261,7 +261,7 @@ def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
 
 
 def _settable(check: Check, species: SpeciesConfig, place: str, path: str) -> None:
-    """A gene can set the number at a place, and it has an effect."""
+    """Reports a gene whose number cannot be set by genes or has no effect."""
     kinds = {name: name if name == ENERGY else f"store.{name}" for name in species.stores}
     known = [each for each in settable() if "<kind>" not in each]
     known += [each.replace("store.<kind>", kind) for each in settable() for kind in kinds.values() if "<kind>" in each]
@@ -276,7 +276,7 @@ def _settable(check: Check, species: SpeciesConfig, place: str, path: str) -> No
 
 
 def _idle(species: SpeciesConfig) -> dict[str, str]:
-    """Numbers that do nothing in a species, with the reason."""
+    """Numbers that have no effect in a species, each with the reason."""
     birth, sensor = species.birth, species.sensor
     found = {
         "sensor.smell_decay": "" if sensor.smells else "it smells nothing: give sensor.smells",
@@ -288,7 +288,7 @@ def _idle(species: SpeciesConfig) -> dict[str, str]:
 
 
 def _own_bodies(check: Check, config: Settings, path: str, genes: Sequence[Gene]) -> None:
-    """Bodies that genes set fit into the arena, pass no wall, and have their genes from birth on."""
+    """Reports body genes whose bodies do not fit into the arena, can pass walls, or lack their genes at birth."""
     side, radius = min(config.arena.width, config.arena.height), value_at(config, f"{path}body.radius")
     for gene in (gene for gene in genes if gene.place.startswith("genome.set.body.")):
         most = radius * 10.0**gene.mutation.limit
@@ -306,7 +306,7 @@ def _own_bodies(check: Check, config: Settings, path: str, genes: Sequence[Gene]
 
 
 def _laws(check: Check, config: Settings, species: SpeciesConfig, path: str, genes: Sequence[Gene]) -> None:
-    """What founders of a species draw lies within the limits of its own genes."""
+    """Reports founder laws that exceed the limits of the species' genes."""
     own = path if len(config.species) > 1 else ""
     least: dict[str, Gene] = {}
     for gene in genes:
@@ -322,7 +322,7 @@ def _laws(check: Check, config: Settings, species: SpeciesConfig, path: str, gen
 
 
 def _limit_name(species: SpeciesConfig, gene: Gene | None, path: str) -> str:
-    """The setting that says a limit, as "genome.weight_limit = "; empty where what the gene stands for limits it."""
+    """The setting that limits a gene, as "genome.weight_limit = "; "" if the limit follows from the gene's effect."""
     own = species.genome.mutation.get(gene.name) if gene else None
     if gene and gene.mutation.limit < (own.limit if own else species.genome.weight_limit):
         return ""
@@ -330,14 +330,14 @@ def _limit_name(species: SpeciesConfig, gene: Gene | None, path: str) -> str:
 
 
 def _crowd(check: Check, config: Settings) -> None:
-    """There are founders, and those of all species together fit into the arena."""
+    """Reports a world without founders, or with more than fit into the arena."""
     paths = {name: f"species.{name}.population.initial_count" for name in config.species}
     if not any(species.population.initial_count for species in config.species.values()):
         check.need(False, next(iter(paths.values())), "there must be at least one founder")
     area, room = 0.0, MAX_COVERAGE * config.arena.width * config.arena.height
     for name, species in config.species.items():
         if 2 * species.body.radius >= min(config.arena.width, config.arena.height):
-            return  # that is said already
+            return  # already reported
         each = math.pi * _founder_radius(species) ** 2
         most = math.floor((room - area) / each)
         area += species.population.initial_count * each
@@ -345,13 +345,13 @@ def _crowd(check: Check, config: Settings) -> None:
 
 
 def _founder_radius(species: SpeciesConfig) -> float:
-    """The radius of a founder, a large one where genes set it."""
+    """Radius of a founder, or of a large founder if genes set the radius."""
     law = species.genome.set.get("body.radius")
     return expressed(species, "body.radius", law.initial_mean + law.initial_sd) if law else species.body.radius
 
 
 def _collisions(check: Check, config: Settings) -> None:
-    """Two species pass through one another, or both collide."""
+    """Reports pairs of species in which only one collides with the other."""
     touches = {name: chosen(config, species.body.collides) for name, species in config.species.items()}
     for name in touches:
         for other in touches:

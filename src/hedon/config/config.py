@@ -1,4 +1,4 @@
-"""A config: settings that have passed all checks, and how one of them is changed."""
+"""A config: settings that have passed all checks. One setting can be changed at a time."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -17,32 +17,32 @@ from hedon.text import brief, count
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Config(Settings):
-    """One run's settings, of which one can be changed; see `Settings`."""
+    """Settings of one run, with methods to change one of them; see `Settings`."""
 
     def __repr__(self) -> str:
         return f"<Config {self.name} ({self.fidelity}), {count(len(self._changes()), 'setting')} changed>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: the settings that differ from those of the preset."""
+        """Shown in notebooks: the settings that differ from the preset."""
         rows = [[path, _said(old), _said(new)] for path, old, new in self._changes()]
         return table_html(f"{self.name} ({self.fidelity})", ("setting", self.preset, "here"), rows)
 
     def _changes(self) -> list[tuple[str, Any, Any]]:
-        from hedon.config.load import changed_settings  # which loads configs
+        from hedon.config.load import changed_settings  # imported late: it loads configs
 
         return changed_settings(self)
 
     @property
     def driven(self) -> tuple[str, ...]:
-        """The species whose agents act as a program tells them."""
+        """Species whose agents are controlled by a program."""
         return tuple(name for name, each in self.species.items() if each.learning.policy == "external")
 
     def with_(self, path: str, value: Any) -> "Config":
-        """The same config with another value of one setting, checked.
+        """Returns a checked copy of the config in which one setting has another value.
 
         Raises:
-            ConfigError: There is no such setting, or the value cannot be used.
-            ArgumentError: The path is no text.
+            ConfigError: The setting does not exist, or the value is invalid.
+            ArgumentError: The path is not a string.
         """
         if not isinstance(path, str):
             raise ArgumentError(f"path: must be that of a setting, such as energy.initial, not {brief(repr(path))}")
@@ -65,11 +65,11 @@ class Config(Settings):
 
 
 def validated(config: Config, origin: str = "config") -> Config:
-    """The same config, after all checks; for a config that was made in Python.
+    """Checks a config that was built in Python, and returns it.
 
     Raises:
-        ConfigError: A type, a range or a name is wrong, or settings contradict one another.
-        ArgumentError: It is not a `Config`.
+        ConfigError: A type, range or name is wrong, or settings contradict one another.
+        ArgumentError: The argument is not a `Config`.
     """
     if not isinstance(config, Config):
         raise ArgumentError(f"config: must be a Config, as `load_config` gives it, not {brief(repr(config))}")
@@ -81,7 +81,7 @@ def _said(value: Any) -> str:
 
 
 def _put(tables: dict[str, Any], names: list[str], value: Any) -> bool:
-    """Sets a value in nested tables, if there is a place; a gene's mutation, which may have none yet, gets a table."""
+    """Sets a value in nested tables, if its place exists. A gene without a mutation table gets one."""
     for depth, name in enumerate(names[:-1]):
         below = tables.get(name) if depth == 1 and names[0] in ("food", "species") else tables.setdefault(name, {})
         if not isinstance(below, dict):

@@ -1,4 +1,4 @@
-"""Writes a config as text or as a digest, and compares two configs."""
+"""Writes a config as text, computes its digest, and compares two configs."""
 
 import hashlib
 import json
@@ -13,24 +13,26 @@ from hedon.error import ArgumentError
 from hedon.text import brief
 
 SCHEMA = "1"
-"""The version of the schema of configs: which settings there are, and what they mean. A digest is of a config under it;
-complete files of other versions are refused."""
+"""Version of the config schema: which settings exist and what they mean. It enters each digest, and complete files of
+other versions are refused.
+"""
 
 LATER = (".looks_like",)
-"""How the paths of settings end that were added to this schema. If one is off, digests are as without it, and complete
-files may lack it: runs from before can be read and resumed."""
+"""Endings of the paths of settings added to this schema. If such a setting is off, digests omit it and complete files
+may lack it, so older runs can still be read and resumed.
+"""
 
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 
 
 def dump_toml(config: Settings, section: str | None = None) -> str:
-    """Writes a config as a TOML file that loads to an equal config; each setting with its meaning and unit.
+    """Writes a config as a TOML file that loads to an equal config; comments give each setting's meaning and unit.
 
     Returns:
-        The text. With a section it is not a complete file, but a part of one.
+        The text. If `section` is given, only that part of a complete file.
 
     Raises:
-        KeyError: There is no such section.
+        KeyError: The section does not exist.
     """
     tables = list(_tables(config))
     if section is None:
@@ -47,16 +49,16 @@ def dump_toml(config: Settings, section: str | None = None) -> str:
 
 
 def section_paths(config: Settings) -> list[str]:
-    """The sections that `dump_toml` can write separately."""
+    """Sections that `dump_toml` can write separately."""
     species = (f"species.{name}{own}" for name in config.species for own in ("", *(f".{each}" for each in PER_SPECIES)))
     foods = (f"food.{kind}" for kind in config.food)
     return [*sections(Settings), *foods, *PER_SPECIES, *species]
 
 
 def file_leaves(config: Settings) -> Iterator[tuple[str, Setting, Any]]:
-    """Every setting as `leaves` has it, but without those that change no world: names and measures.
+    """Yields every setting as `leaves` does, except names and measures, which change no world.
 
-    Where there is only the species of a file without `[species]`, paths are as in such a file: `energy.initial`.
+    If the only species comes from a file without `[species]`, its paths are as in that file: `energy.initial`.
     """
     unnamed = f"species.{ONLY}." if list(config.species) == [ONLY] else ""
     for path, setting, value in leaves(config):
@@ -65,26 +67,26 @@ def file_leaves(config: Settings) -> Iterator[tuple[str, Setting, Any]]:
 
 
 def flatten(config: Settings) -> dict[str, Any]:
-    """Every setting by its path, in order, as `file_leaves` has it."""
+    """Every setting by its path, in the order of `file_leaves`."""
     return {path: value for path, _, value in file_leaves(config)}
 
 
 def digest(config: Settings) -> str:
-    """A fingerprint of a config: equal exactly if all settings are equal, apart from names, colors and measures.
+    """Fingerprint of a config: equal if and only if all settings are equal, except names, colors and measures.
 
-    It is of the complete config and of the version of the schema.
+    It covers the complete config and the schema version.
 
     Returns:
-        SHA-256, 64 hexadecimal digits.
+        SHA-256 as 64 hexadecimal digits.
     """
     return Fingerprint(config).digest({})
 
 
 class Fingerprint:
-    """Gives the digests of a config, and of those that differ from it in some values.
+    """Computes digests of a config and of variants that differ in some values.
 
     Args:
-        config: The config.
+        config: Base of the variants.
     """
 
     def __init__(self, config: Settings) -> None:
@@ -92,26 +94,26 @@ class Fingerprint:
         self._rows = {path: _row(path, value) for path, _, value in counted}
 
     def digest(self, values: Mapping[str, Any]) -> str:
-        """The digest of the config with other values; see `digest`."""
+        """Digest of the config with these values replaced; see the function `digest`."""
         changed = {path: _row(path, value) for path, value in values.items() if path in self._rows}
         rows = ", ".join(filter(None, (self._rows | changed).values()))
         return hashlib.sha256(f'{{"schema": {json.dumps(SCHEMA)}, "settings": [{rows}]}}'.encode()).hexdigest()
 
 
 def _row(path: str, value: Any) -> str:
-    """What a digest is made of, for one setting; empty where it came later and is off."""
+    """A setting's part of the digest; empty if the setting was added to the schema and is off."""
     return json.dumps([path, value]) if value or not path.endswith(LATER) else ""
 
 
 def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:
-    """The settings in which two configs differ.
+    """Lists the settings in which two configs differ.
 
     Returns:
-        (path, value in a, value in b) in order, with None for a setting that is absent. If the kinds of food or
-        their order differ, also the path "food" with their names.
+        (path, value in a, value in b) in order; None stands for a missing setting. If the food kinds or their order
+            differ, an entry with the path "food" lists their names.
 
     Raises:
-        ArgumentError: One of them is no config.
+        ArgumentError: An argument is not a config.
     """
     for name, each in (("a", a), ("b", b)):
         if not isinstance(each, Settings):
@@ -123,7 +125,7 @@ def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:
 
 
 def _tables(section: Any, path: str = "") -> Iterator[tuple[str, str]]:
-    """The text of each section that has settings, by its path."""
+    """Text of each section that has settings, by path."""
     lines = [f"[{path}]"] if path else []
     for name, setting in settings(type(section)).items():
         unit = f" [{setting.doc.unit}]" if setting.doc.unit else ""

@@ -1,4 +1,4 @@
-"""A config as the engine takes it: its settings by the same paths, and layouts in place of names."""
+"""Converts a config to the engine's input: the same paths of settings, with layouts in place of names."""
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class EngineInput:
-    """A config that has passed all checks, and the engine's input made from it.
+    """A checked config with the engine's input made from it.
 
     Attributes:
         config: The checked config.
         settings: Values for the engine's structs.
-        walls: (count, 4) float32, the outer polygon first [u].
-        outer_walls: Number of walls that make up the outer polygon.
+        walls: Segments, (count, 4) float32, outer polygon first [u].
+        outer_walls: Number of walls in the outer polygon.
     """
 
     config: Config
@@ -38,20 +38,20 @@ class EngineInput:
 
 
 def engine_input(config: Config) -> EngineInput:
-    """Checks a config, however it was made, and turns it into the engine's input.
+    """Checks a config from any source, and converts it to the engine's input.
 
     The walls are computed in the caller's rounding mode: see `FloatMode` of the engine.
 
     Raises:
         ConfigError: A setting is wrong.
-        ArgumentError: It is not a `Config`.
+        ArgumentError: The argument is not a `Config`.
     """
     config = validated(config)
     return EngineInput(config, engine_config(config), walls(config.arena), outer_count(config.arena))
 
 
 def engine_config(config: Config) -> dict[str, Any]:
-    """The nested dict that the engine's structs are filled from."""
+    """Nested dict that fills the engine's structs."""
 
     values = {path: value for path, _, value in leaves(config)}
 
@@ -66,7 +66,7 @@ def engine_config(config: Config) -> dict[str, Any]:
 
 
 def engine_paths(config: Config) -> dict[str, list[str]]:
-    """Where the engine has the value of a setting: its paths, such as `species[0].energy.initial`, by the setting's."""
+    """The engine's paths, such as `species[0].energy.initial`, for each path of a setting."""
     found: dict[str, list[str]] = {}
     for path, value in flat(_tree(config)):
         if isinstance(value, _Path):
@@ -75,7 +75,7 @@ def engine_paths(config: Config) -> dict[str, list[str]]:
 
 
 def flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    """What nested dicts and lists have, each by its path, as in `food[0].energy`."""
+    """Flattens nested dicts and lists to values by path, such as `food[0].energy`."""
     if isinstance(value, dict):
         for name, inner in value.items():
             yield from flat(inner, f"{path}.{name}" if path else name)
@@ -87,13 +87,13 @@ def flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 class _Path(str):
-    """In the engine's input, what stands for the value of the setting with this path."""
+    """Placeholder in the engine's input for the value of the setting with this path."""
 
     __slots__ = ()
 
 
 def _tree(config: Config) -> dict[str, Any]:
-    """The engine's input with paths of settings in place of their values."""
+    """The engine's input with paths of settings in place of values."""
     return _section(config, "") | {"layout": [_layout(config, name) for name in config.species]}
 
 
@@ -115,7 +115,7 @@ def _section(section: Any, path: str) -> dict[str, Any]:
 
 
 def _layout(config: Config, name: str) -> dict[str, Any]:
-    """What follows from the names in a species' settings, and from lengths and forces in other units."""
+    """Engine input derived from a species' names, and from lengths and forces in other units."""
     species, path = config.species[name], f"species.{name}."
     layout = layout_of(config, species)
     eaten, motor = diet(config, species), species.motor
@@ -183,7 +183,7 @@ def _channel(path: str, channel: Channel) -> dict[str, Any]:
 
 
 def _of_stores(config: Config, what: str, stores: tuple[str, ...]) -> list[Any]:
-    """What each kind of food gives or needs, by kind, then by store."""
+    """Amounts that each kind of food gives or needs, by kind, then by store."""
     tables = {kind: getattr(food, what) for kind, food in config.food.items()}
     return [
         _Path(f"food.{kind}.{what}.{name}") if name in table else 0.0

@@ -1,4 +1,4 @@
-"""Genes that set numbers of a species, such as the length of its rays: which numbers, and what a gene makes of them."""
+"""Genes that set numbers of a species, such as ray length: which numbers genes can set, and how."""
 
 import math
 from collections.abc import Mapping
@@ -17,22 +17,22 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 CONVERTED = ("motor.force_scale", "birth.distance_sd")
-"""Numbers that genes may set though the engine has them only in its own units."""
+"""Numbers that genes may set although the engine holds them only in its own units."""
 NO_GENE = {
     "initial": "founders have it before they have genes",
     "population": "founders have it before they have genes",
     "reward": "genome.family has genes of the threshold of a reward, and its weights are genes",
     "learning": "genome.learning has genes of learning",
 }
-"""Settings and sections that no gene sets, with the reason."""
+"""Settings and sections that genes cannot set, with the reason."""
 
 
 @cache
 def settable() -> Mapping[str, Setting]:
-    """The numbers of a species that genes may set, by path; those of stores by `store.<kind>`."""
+    """Numbers of a species that genes can set, by path; numbers of stores under `store.<kind>`."""
     found: dict[str, Setting] = {}
     for section, inner in engine_sections(SpeciesConfig).items():
-        if section in NO_GENE or section == ENERGY:  # energy is a store
+        if section in NO_GENE or section == ENERGY:  # energy is one of the stores
             continue
         place = f"{section}.<kind>" if inner.repeated else section
         for name, each in settings(inner.type).items():
@@ -43,29 +43,29 @@ def settable() -> Mapping[str, Setting]:
 
 
 def kind_of(path: str) -> str:
-    """The path of a number in `settable`: `store.<kind>.decay` for `energy.decay` and `store.water.decay`."""
+    """Path of a number in `settable`: `store.<kind>.decay` for `energy.decay` and `store.water.decay`."""
     section, *names = path.split(".")
     return f"store.<kind>.{'.'.join(names[-1:])}" if section in (ENERGY, "store") else path
 
 
 def gene_column(path: str) -> str:
-    """The column of the gene that sets a number: `g_sensor_ray_length` for `sensor.ray_length`."""
+    """Column of the gene that sets a number: `g_sensor_ray_length` for `sensor.ray_length`."""
     return "g_" + path.replace(".", "_")
 
 
 def engine_name(path: str) -> str:
-    """What the engine calls the number at a path of `settable`: `store_decay`."""
+    """The engine's name of a number in `settable`, such as `store_decay`."""
     return path.replace(".<kind>", "").replace(".", "_")
 
 
 def limits_of(path: str) -> tuple[float, float]:
-    """The least and the largest value that a gene can give a number."""
+    """Smallest and largest value that a gene can give a number."""
     allowed = settable()[path].doc.range
     return (SMALLEST if allowed.ge is None else allowed.ge), (math.inf if allowed.le is None else allowed.le)
 
 
 def of_mean_founders(species: SpeciesConfig) -> SpeciesConfig:
-    """A species with the numbers that genes set as those of a founder with mean genes."""
+    """The species with gene-set numbers as in a founder with mean genes."""
     for path, law in species.genome.set.items():
         species = _put(species, path.split("."), expressed(species, path, law.initial_mean))
     return species
@@ -80,15 +80,15 @@ def _put(section: Any, names: list[str], value: float) -> Any:
 
 
 def expressed(species: SpeciesConfig, path: str, gene: "float | NDArray[np.float32]") -> Any:
-    """What agents have at a path whose genes are known.
+    """Computes the number that a gene gives an agent.
 
     Args:
-        species: of the agents.
-        path: of a number that a gene sets, in the species.
-        gene: the gene, or an array of them, any shape.
+        species: The agents' species.
+        path: Path, within the species, of a number that a gene sets.
+        gene: Value of the gene, or an array of values of any shape.
 
     Returns:
-        A number, or an array of the shape of `gene`; in the unit of the setting.
+        A number, or an array of the shape of `gene`, in the setting's unit.
     """
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""How settings are declared: each with its meaning, unit, range and source, for people and for programs."""
+"""Declarations of settings: meaning, unit, range and source, for readers and for programs."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -10,19 +10,18 @@ from typing import Any, Literal, get_args, get_origin, get_type_hints
 PAPER = "paper"
 """Printed in Kanagawa & Doya (2024), ALIFE."""
 CODE = "code"
-"""The value in the configuration of the paper's released code; the paper prints another value or none."""
+"""Value in the configuration of the paper's released code; the paper prints another value or none."""
 EITHER = "paper or code"
-"""The paper's value if it prints one, else that of its released code; the two do not differ."""
+"""The value that the paper prints, or else its released code's; the two do not conflict."""
 OURS = "ours"
 """A choice of this project."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Range:
-    """Which values are allowed: numbers by `ge`, `gt`, `le` and `lt`, lists by `max_items`.
+    """Allowed values: bounds `ge`, `gt`, `le` and `lt` for numbers, and `max_items` for lists.
 
-    `each` has the least and the largest number in a list, `form` shows how a text must look: `config.check` checks
-    both.
+    `each` bounds the numbers in a list, and `form` shows the required form of a string; `config.check` checks both.
     """
 
     ge: float | None = None
@@ -56,7 +55,7 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class Doc:
-    """What is said of a setting where it is declared; see `setting`."""
+    """Documentation of a setting from its declaration; see `setting`."""
 
     meaning: str
     unit: str
@@ -72,13 +71,13 @@ def setting(
     """Declares a setting: `width: float = setting(480.0, "extent along x", "u", PAPER, gt=0)`.
 
     Args:
-        default: Its value where nothing is said.
-        meaning: What the value does, as a phrase.
-        unit: Its unit, or "" if it has none.
-        source: `PAPER`, `CODE`, `EITHER` or `OURS`, with a remark if one is needed.
-        derived: The engine gets what is made of it, in layouts, walls or lengths, and not the setting itself.
-        shapes: The engine gets it, but layouts or walls depend on it too: it cannot be changed without them.
-        limits: The allowed values, besides their type, as `Range` takes them.
+        default: Value used if a config does not set it.
+        meaning: Effect of the value, as a phrase.
+        unit: Its unit, or "" for none.
+        source: `PAPER`, `CODE`, `EITHER` or `OURS`, with a remark if needed.
+        derived: The engine gets only what is derived from the setting: layouts, walls or lengths.
+        shapes: The engine gets the setting, but layouts or walls depend on it too, so it cannot be changed separately.
+        limits: Allowed values besides the type, passed to `Range`.
     """
     doc = {"doc": Doc(meaning, unit, source, Range(**limits), derived, shapes)}
     if isinstance(default, dict):
@@ -88,7 +87,7 @@ def setting(
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One field of a section: its name, type, default and documentation."""
+    """A field of a section: name, type, default and documentation."""
 
     name: str
     type: Any
@@ -97,7 +96,7 @@ class Setting:
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """The allowed names if the setting is a choice among names, else none."""
+        """Allowed names if the setting is a choice, else empty."""
         return get_args(self.type) if get_origin(self.type) is Literal else ()
 
     @property
@@ -127,7 +126,7 @@ def type_name(kind: Any) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A field that is a section, or a table of sections by name; see `section`."""
+    """A field that holds a section, or a table of sections by name; see `section`."""
 
     type: type
     repeated: bool
@@ -145,7 +144,7 @@ def section(
 
 @cache
 def settings(section: type) -> Mapping[str, Setting]:
-    """The settings of a section by name, in order, without its inner sections."""
+    """Settings of a section by name, in order, without inner sections."""
     hints, own = get_type_hints(section), (each for each in fields(section) if "doc" in each.metadata)
     return MappingProxyType(
         {each.name: Setting(each.name, hints[each.name], _default(each), each.metadata["doc"]) for each in own}
@@ -158,7 +157,7 @@ def _default(each: Field[Any]) -> Any:
 
 @cache
 def sections(section: type) -> Mapping[str, Section]:
-    """The inner sections of a section by name, in order."""
+    """Inner sections by name, in order."""
     hints, found = get_type_hints(section), {}
     for each in fields(section):
         if "section" in each.metadata:
@@ -170,13 +169,13 @@ def sections(section: type) -> Mapping[str, Section]:
 
 
 def number_of(table: Setting, name: str) -> Setting:
-    """One number of a table of them, as a setting."""
+    """One entry of a table of numbers, as a setting."""
     low, high = table.doc.range.each or (-math.inf, math.inf)
     return Setting(name, float, 0.0, replace(table.doc, range=Range(ge=low, le=high)))
 
 
 def engine_settings(section: type) -> Mapping[str, Setting]:
-    """The settings of a section that the engine gets: numbers, lists of them and choices, unless they are derived."""
+    """Settings that the engine gets: numbers, lists of numbers and choices, unless they are derived."""
 
     def has_text(kind: Any) -> bool:
         return kind is str or any(map(has_text, get_args(kind)))
@@ -186,15 +185,15 @@ def engine_settings(section: type) -> Mapping[str, Setting]:
 
 
 def engine_sections(section: type) -> Mapping[str, Section]:
-    """The inner sections of a section of which the engine gets anything itself."""
+    """Inner sections that the engine gets at least a part of."""
     return {name: each for name, each in sections(section).items() if not each.derived}
 
 
 def value_at(section: Any, path: str) -> Any:
-    """What a config, or a part of one, has at a path.
+    """Value at a path of a config or of a part of it.
 
     Raises:
-        ValueError: There is no such name in a table of sections.
+        ValueError: A table of sections has no entry of this name.
         AttributeError: A section has no such setting.
     """
     if not path:
@@ -202,13 +201,13 @@ def value_at(section: Any, path: str) -> Any:
     if not isinstance(section, dict):
         name, _, rest = path.partition(".")
         return value_at(getattr(section, name), rest)
-    # The names of users' sections may have points, until they are refused.
+    # Names of users' sections may contain dots until they are refused.
     name = max((each for each in section if f"{path}.".startswith(f"{each}.")), key=len)
     return value_at(section[name], path[len(name) + 1 :])
 
 
 def inner_sections(section: Any, path: str = "") -> Iterator[tuple[str, Section, Any]]:
-    """Every section that is directly in a section, or in a table of it, by its path, in order."""
+    """Yields every section directly inside a section, or inside a table of it, with its path, in order."""
     for name, inner in sections(type(section)).items():
         below = getattr(section, name)
         for each, own in below.items() if inner.repeated else [("", below)]:
@@ -216,9 +215,9 @@ def inner_sections(section: Any, path: str = "") -> Iterator[tuple[str, Section,
 
 
 def leaves(section: Any, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
-    """Every setting in a section and its inner sections by its path, in order, with its value.
+    """Yields every setting in a section and its inner sections with its path and value, in order.
 
-    A table of numbers has a path for each of them: `food.normal.gives.energy`.
+    Each number in a table of numbers has a path of its own: `food.normal.gives.energy`.
     """
     for name, setting in settings(type(section)).items():
         value = getattr(section, name)

@@ -1,4 +1,4 @@
-"""Which settings a world keeps for as long as it lives: what the shapes of its arrays depend on, and its beginning."""
+"""Settings fixed for a world's lifetime: those that determine array shapes or its initial state."""
 
 from hedon.config.schema.species import default_path
 
@@ -13,10 +13,10 @@ FIXED = (
     "reward.memory",
     "world.rollout_steps",
 )
-"""Settings and sections. The kinds of food and their capacities are fixed too."""
+"""Fixed settings and sections. The food kinds and their capacities are fixed too."""
 
 
 def fixed_path(path: str) -> bool:
-    """Whether a setting cannot be changed in a world that has begun."""
+    """Whether a setting cannot change once a world has started."""
     food = path == "food" or (path.startswith("food.") and path.endswith(".capacity"))
     return food or default_path(path).startswith(FIXED)

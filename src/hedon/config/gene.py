@@ -1,4 +1,4 @@
-"""A gene by the name of its column in the records."""
+"""Looks up genes by their columns in the records."""
 
 from collections.abc import Iterable, Mapping
 
@@ -7,12 +7,12 @@ from hedon.config.schema.settings import Settings
 
 
 def gene_of(config: Settings, column: str) -> Gene:
-    """The gene of a column, of the first species that has it; a column such as "prey.w_normal" names the species."""
+    """The gene of a column in the first species that has it, or in the species of a column such as "prey.w_normal"."""
     return _genes(layouts(config), column)[0]
 
 
 def limits_of(config: Settings, columns: Iterable[str]) -> dict[str, float]:
-    """What genes are clipped to, on both sides, by column; without a species in the column, in all that have it."""
+    """Absolute limit of each gene, by column; if a column names no species, the smallest among species that have it."""
     made = layouts(config)
     return {column: min(gene.mutation.limit for gene in _genes(made, column)) for column in columns}
 

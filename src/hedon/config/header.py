@@ -1,7 +1,7 @@
-"""The engine's structs of all settings: `python -m hedon.config.header > engine/config/schema.h`.
+"""Generates the engine's structs of all settings: `python -m hedon.config.header > engine/config/schema.h`.
 
-A section is a struct, a setting a member of the same name, a choice an enumeration that is called as its section and
-setting. Each struct has the limits of its members, for the engine's own check.
+Each section becomes a struct, each setting a member of the same name, and each choice an enumeration named after its
+section and setting. Structs include the limits of their members, which the engine checks itself.
 """
 
 import sys
@@ -49,7 +49,7 @@ def _room() -> Iterator[str]:
 
 def _structs() -> Iterator[str]:
     made: dict[str, list[str]] = {}
-    for root in (GeneConfig, MutationConfig, Settings):  # layouts have laws and mutations of genes
+    for root in (GeneConfig, MutationConfig, Settings):  # layouts contain gene laws and mutations
         _add(root, made)
     for lines in made.values():
         yield from lines
@@ -65,8 +65,8 @@ def _structs() -> Iterator[str]:
 
 
 def _add(section: type, made: dict[str, list[str]]) -> str:
-    """Adds the struct of a section after those of its inner sections; returns its name."""
-    if is_dataclass(section.__base__):  # the same settings with other defaults
+    """Adds the struct of a section after the structs of its inner sections; returns its name."""
+    if is_dataclass(section.__base__):  # same settings, other defaults
         return _add(section.__base__, made)
     name = section.__name__
     own, enums, members = name.removesuffix("Config"), [], []
@@ -119,7 +119,7 @@ def _type(setting: Setting) -> str:
 
 
 def _limit(setting: Setting) -> str:
-    """The limit of a number, or of each number in a list."""
+    """Limit of a number, or of each number in a list."""
     if setting.choices:
         return "Limit()"
     if setting.type is bool:

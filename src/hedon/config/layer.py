@@ -1,4 +1,4 @@
-"""Merges layers of nested tables: a later layer replaces the settings of earlier ones, one by one."""
+"""Merges layers of nested tables: each layer replaces single settings of earlier ones."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
@@ -12,14 +12,14 @@ from hedon.config.schema.store import ENERGY
 
 Table = dict[str, Any]
 EVERY = "*"
-"""In a layer, the kind of food that stands for every kind: `[food."*"]`."""
+"""Key in a layer that stands for every kind of food: `[food."*"]`."""
 
 
 def stack(layers: Iterable[Table]) -> Table:
-    """Merges tables; where several have a setting, the last one counts.
+    """Merges tables. If several define a setting, the last one wins.
 
-    In `food`, a layer's `*` applies to every kind, also to kinds that later layers add; `kind = false`
-    removes a kind. Kinds stay in the order in which they first appear.
+    In `food`, a layer's `*` applies to every kind, including kinds added by later layers; `kind = false` removes a
+    kind. Kinds keep the order in which they first appear.
     """
     result: Table = {}
     for layer in layers:
@@ -31,11 +31,11 @@ def stack(layers: Iterable[Table]) -> Table:
 
 
 def settle_food(tables: Table) -> Iterator[Problem]:
-    """Removes `*` and kinds that are false or unknown from `food`, in place; yields what is wrong with the kinds."""
+    """Removes `*` and kinds that are false or unknown from `food`, in place; yields problems with the kinds."""
     food = tables.get("food")
     if not isinstance(food, dict):
         return
-    if list(food) == [EVERY]:  # it says nothing of any kind
+    if list(food) == [EVERY]:  # it applies to no kind
         del tables["food"]
         return
     every = food.pop(EVERY, {})
@@ -53,10 +53,10 @@ def settle_food(tables: Table) -> Iterator[Problem]:
 
 
 def settle_species(tables: Table, layers: Sequence[Table]) -> Iterator[Problem]:
-    """Moves the sections at the top, which are defaults for all species, into each species, in place.
+    """Moves top-level sections, the defaults of all species, into each species, in place.
 
-    A species that is false is removed; if none is left, there is one that has the defaults. Yields what is wrong with
-    the species, and each default of `layers`, those of the user, that changes nothing: where every species has its own.
+    A species set to false is removed; if none is left, one species has the defaults. Yields problems with species, and
+    each default from `layers`, the user's layers, that has no effect because every species has its own value.
     """
     common = {name: tables.pop(name) for name in PER_SPECIES if name in tables}
     species = tables.setdefault("species", {})
@@ -95,7 +95,7 @@ def _flat(table: Table, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str,
 
 
 def with_defaults(complete: Table) -> Table:
-    """The tables of a complete file, whose only species is put at the top, where single settings reach it."""
+    """Tables of a complete file; a single species is moved to the top level, where overrides can reach it."""
     species = complete.get("species")
     if not isinstance(species, dict) or len(species) != 1:
         return complete
@@ -104,7 +104,7 @@ def with_defaults(complete: Table) -> Table:
 
 
 def has(table: Any, path: Sequence[str]) -> bool:
-    """Whether nested tables have something at a path."""
+    """Whether nested tables contain a path."""
     for name in path:
         if not isinstance(table, dict) or name not in table:
             return False
@@ -115,8 +115,8 @@ def has(table: Any, path: Sequence[str]) -> bool:
 def settle_genes(tables: Table) -> None:
     """Completes the genes of each species, in place.
 
-    What a gene of `genome.mutation` does not say, `genome` says. What `genome.set` names is named by its whole path:
-    `set.sensor.ray_length` may be nested, or have quotes.
+    Values missing for a gene in `genome.mutation` come from `genome`. Keys of `genome.set` become whole paths: in a
+    file, `set.sensor.ray_length` may be nested or quoted.
     """
     species = tables.get("species")
     owners = species.values() if isinstance(species, dict) else []
@@ -137,7 +137,7 @@ def settle_genes(tables: Table) -> None:
 
 
 def _laws(table: Table, path: str = "") -> Iterator[tuple[str, Any]]:
-    """The laws of the genes that set numbers, by the whole paths of these."""
+    """Laws of genes that set numbers, by the whole paths of the numbers."""
     for name, value in table.items():
         place = f"{path}{name}"
         is_law = not isinstance(value, dict) or kind_of(place) in settable() or {*value} <= {*settings(GeneConfig)}
@@ -145,7 +145,7 @@ def _laws(table: Table, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def settle_stores_and_queries(tables: Table) -> Iterator[Problem]:
-    """Removes stores and queries that are false from each species; removes and yields stores without a capacity."""
+    """Removes stores and queries set to false from each species; removes and reports stores without a capacity."""
     species = tables.get("species")
     for name, own in species.items() if isinstance(species, dict) else ():
         if not isinstance(own, dict):
@@ -171,7 +171,7 @@ def settle_stores_and_queries(tables: Table) -> Iterator[Problem]:
 
 
 def _lay(base: Any, over: Any) -> Any:
-    """What counts of two values: tables merge, of all else the later one."""
+    """Merges two values: tables merge recursively; otherwise the later value wins."""
     if not isinstance(base, dict) or not isinstance(over, dict):
         return over
     return base | {name: _lay(base.get(name), value) for name, value in over.items()}
@@ -179,7 +179,7 @@ def _lay(base: Any, over: Any) -> Any:
 
 def _lay_food(base: Table, over: Table) -> Table:
     every = over.get(EVERY, {})
-    known = isinstance(every, dict)  # else it is refused later
+    known = isinstance(every, dict)  # otherwise it is refused later
     merged = {name: _lay(below, every) if known and isinstance(below, dict) else below for name, below in base.items()}
     merged[EVERY] = _lay(base.get(EVERY, {}), every)
     for kind, value in over.items():

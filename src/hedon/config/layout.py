@@ -1,6 +1,6 @@
-"""What the numbers of an agent mean: the only place that knows the order of genes, reward terms and sensor channels.
+"""Layouts of an agent's numbers: the only place that defines the order of genes, reward terms and sensor channels.
 
-The engine gets these layouts as data, the records carry them, and columns, labels and figures are named by them.
+The engine gets these layouts as data, records store them, and columns, labels and figures take their names from them.
 """
 
 from dataclasses import dataclass, replace
@@ -31,12 +31,12 @@ SECOND_GENES = {
     ABOVE: "reward weight above the threshold",
     OLD: "reward weight when old",
 }
-"""How the names of the second genes of weights end, and what these genes are."""
+"""Suffixes of the names of weights' second genes, with descriptions of these genes."""
 SET_POINT = "set_point"
 EXTRA = "extra_"
-"""What the columns of genes for rules begin with."""
+"""Prefix of the columns of genes for rules."""
 MAX_WEIGHT = 1e3
-"""Largest limit of genes that are no exponents."""
+"""Largest limit of genes that are not exponents."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +46,11 @@ class Gene:
     Attributes:
         name: Its column in the records.
         role: "reward", "learning", "setting", "rule" or "neutral".
-        meaning: What it does, as a phrase.
-        law: How founders draw it.
-        place: The path of the law: in the config where it begins with "food.", else in the species.
-        mutation: How it mutates, and its limit, which is at most `most`.
-        most: The largest limit that it can have.
+        meaning: Effect of the gene, as a phrase.
+        law: Distribution of founders' values.
+        place: Path of the law: in the config if it begins with "food.", else in the species.
+        mutation: Its mutation, with a limit of at most `most`.
+        most: Largest limit allowed for the gene.
     """
 
     name: str
@@ -67,12 +67,12 @@ class RewardTerm:
     """One term of a reward: coef · weight · channel.
 
     Attributes:
-        name: What is paid: `normal`, `action`, `see_predator`, or `drive_reduction`.
-        channel: What it is paid by.
-        gene: Name of the gene that weighs it; "" for none.
-        second_gene: Name of the weight's other gene, where the family of the reward has one.
+        name: What is rewarded: `normal`, `action`, `see_predator`, or `drive_reduction`.
+        channel: Channel that the term multiplies.
+        gene: Name of the gene that gives the weight; "" for none.
+        second_gene: Name of the weight's second gene, if the reward family has one.
         coef: Factor of the term.
-        place: The path of the factor in the species.
+        place: Path of the factor in the species.
     """
 
     name: str
@@ -85,19 +85,19 @@ class RewardTerm:
 
 @dataclass(frozen=True, slots=True)
 class SpeciesLayout:
-    """The layouts of one species.
+    """Layouts of one species.
 
     Attributes:
-        genes: The genome, in order.
-        terms: The reward, in order.
-        sees: What its rays tell apart, in the order of their channels.
-        stores: Names of its stores, in the engine's order: energy first.
-        observed: What it observes beside rays and touch, in order.
-        last: What of a step is kept for the next observation, in order.
-        recorded: What a rule gets beside the reward's inputs, genes and memory, in order.
-        gate: What the family of its reward compares with a threshold, where it has one.
-        smells: What it smells, in the order of the channels of smell.
-        touches: What it collides with and feels, in the order of the channels of touch.
+        genes: Genes in genome order.
+        terms: Reward terms, in order.
+        sees: Types that its rays distinguish, in the order of their channels.
+        stores: Names of its stores in the engine's order, energy first.
+        observed: Channels observed besides rays and touch, in order.
+        last: Channels stored during a step for the next observation, in order.
+        recorded: Channels that a rule gets besides the reward's inputs, genes and memory, in order.
+        gate: Channel that the reward family compares with a threshold, if it has one.
+        smells: Types that it smells, in the order of the smell channels.
+        touches: Types that it collides with and feels, in the order of the touch channels.
     """
 
     genes: tuple[Gene, ...]
@@ -118,12 +118,12 @@ class SpeciesLayout:
 
 
 def layouts(config: Settings) -> dict[str, SpeciesLayout]:
-    """The layouts of every species, by name, in the order of the config."""
+    """Layouts of every species by name, in the order of the config."""
     return {name: layout_of(config, species) for name, species in config.species.items()}
 
 
 def gene_columns(config: Settings) -> tuple[str, ...]:
-    """Names of the genes of all species, each once, in order; neutral genes last."""
+    """Names of the genes of all species, without repeats, in order; neutral genes come last."""
     genes = {gene.name: gene for layout in layouts(config).values() for gene in layout.genes}
     return (
         *(name for name, gene in genes.items() if gene.role != "neutral"),
@@ -132,7 +132,7 @@ def gene_columns(config: Settings) -> tuple[str, ...]:
 
 
 def observation_columns(config: Settings, name: str) -> tuple[str, ...]:
-    """Names of the entries of what a species observes, in order: model page, section 5."""
+    """Names of the entries of a species' observation, in order: model page, section 5."""
     species, layout = config.species[name], layout_of(config, config.species[name])
     return (
         *(f"ray_{kind}_{i}" for kind in layout.sees for i in range(species.sensor.ray_count)),
@@ -142,17 +142,16 @@ def observation_columns(config: Settings, name: str) -> tuple[str, ...]:
 
 
 def store_columns(config: Settings) -> tuple[str, ...]:
-    """Names of the stores of all species but energy, each once, in order."""
+    """Names of all species' stores except energy, without repeats, in order."""
     return tuple(dict.fromkeys(name for species in config.species.values() for name in species.store))
 
 
 def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str, ...]:
-    """Names of the fields of the record that a rule of a species gets of each agent, in order.
+    """Names of the fields that a species' rule receives for each agent, in order.
 
-    An input of the reward is called as its gene is, without the `w_`: `normal`, `action`, `see_predator`; or
-    `drive_reduction`. What the config itself would say is `linear` for a reward, and `chance` for a hazard or a birth.
-    Where there are other stores than energy, they stand before it, each as it was at the start of the step and as it
-    is.
+    An input of the reward has the name of its gene without `w_`: `normal`, `action`, `see_predator`; or it is
+    `drive_reduction`. The config's own value is `linear` for a reward, and `chance` for a hazard or a birth. Stores
+    other than energy come before it, each at the start of the step and now.
     """
     layout, memory = layout_of(config, config.species[name]), config.species[name].reward.memory
     inputs = (term.name for term in layout.terms)
@@ -162,10 +161,10 @@ def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str,
 
 
 def choose_species(name: str | None, config: Settings) -> str:
-    """The species of this name, or by default the first.
+    """Returns the name of a species, by default the first.
 
     Raises:
-        ArgumentError: There is no such species.
+        ArgumentError: The species does not exist.
     """
     known = list(config.species)
     if name is not None and name not in known:
@@ -176,7 +175,7 @@ def choose_species(name: str | None, config: Settings) -> str:
 
 
 def set_point_of(store: str) -> str:
-    """The gene of the set point of a store."""
+    """Name of the gene for a store's set point."""
     return SET_POINT if store == ENERGY else f"{SET_POINT}_{store}"
 
 
@@ -201,7 +200,7 @@ class _Layout:
     def add_term(self, name: str, channel: Channel, meaning: str, law: str, coef: str) -> None:
         """Adds a term, the gene that weighs its channel, and the weight's second gene if it has one.
 
-        `law` is the place of the gene's law, `coef` that of the term's factor.
+        `law` is the path of the gene's law, `coef` the path of the term's factor.
         """
         weight = second = f"w_{name}"
         self.add_gene(weight, "reward", f"reward weight for {meaning}", law)
@@ -213,21 +212,21 @@ class _Layout:
 
 
 def second_ending(reward: RewardConfig) -> str:
-    """How the names of the second genes of weights end; "" where weights have one gene."""
+    """Suffix of the names of weights' second genes; "" if weights have one gene."""
     if reward.family == "between":
         return OLD if reward.gate == "age" else ABOVE
     return SCALE if reward.family == "scaled" else ""
 
 
 def _most(family: str, role: str, name: str) -> float:
-    """The largest limit that a gene can have: beyond it, what it stands for is out of all proportion."""
+    """Largest limit allowed for a gene; beyond it, the effect is absurdly large."""
     exponent = family == "sinh" and role == "reward" and not name.startswith(SET_POINT)
     exponent |= name.endswith(SCALE) or role in ("learning", "setting") or name.removeprefix("g_") in FAMILY_GENES
     return MAX_EXPONENT if exponent else MAX_WEIGHT
 
 
 def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
-    """The layouts of one species. There must be all channels that it is rewarded for."""
+    """Layouts of one species. All channels that its reward uses must exist."""
     made, genome, reward = _Layout(config, species), species.genome, species.reward
     eaten, known = diet(config, species), made.known
     for meal, name in enumerate((*config.food, *config.species)):

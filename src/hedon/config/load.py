@@ -1,4 +1,4 @@
-"""Reads a config from a preset or a file: preset, then fidelity, then the file, then single overrides."""
+"""Loads a config from a preset or a file. Later layers win: preset, fidelity, file, overrides."""
 
 import re
 import unicodedata
@@ -35,7 +35,7 @@ _FOLDER = Path(__file__).parent
 DEFAULT_PRESET = "baseline"
 DEFAULT_FIDELITY = "corrected"
 PAPER_PRESETS = ("baseline", "small", "large", "centered", "relocation", "poor", "poison")
-"""The conditions of the paper."""
+"""Conditions of the paper."""
 SEQUEL_PRESETS = (
     "predator",
     "predator-square",
@@ -51,25 +51,25 @@ SEQUEL_PRESETS = (
     "pitfall-sparse",
     "pitfall-default-birth",
 )
-"""The conditions of its sequel, on predators and prey."""
+"""Conditions of the sequel, on predators and prey."""
 OUR_PRESETS = ("seasons", "appetite")
-"""Conditions that are ours."""
+"""Conditions of this project."""
 PRESETS = (*PAPER_PRESETS, *SEQUEL_PRESETS, *OUR_PRESETS)
 MISTYPED = 0.75
-"""How alike two names of species are at least, if one is a typing error for the other: a letter of four."""
+"""Similarity from which one name counts as a misspelling of another: one letter in four differs."""
 FIDELITIES = ("corrected", "released", "as_printed")
-"""Variants of every preset: correct algorithms, the faults of the released code, the values as printed."""
+"""Variants of every preset: correct algorithms, the released code with its faults, and the values as printed."""
 
 
 def load_config(source: str | Path, fidelity: str | None = None, overrides: Iterable[str] = ()) -> Config:
     """Loads a run's settings.
 
-    The file of a rule in Python is looked up from the folder of the TOML file, or from the current folder if an
-    override names it; the config has its absolute path.
+    The file of a Python rule is resolved relative to the folder of the TOML file, or to the current folder if an
+    override names it; the config holds its absolute path.
 
     Raises:
-        ConfigError: There is no such preset or file, or something in it is wrong; the error lists all problems.
-        ArgumentError: An argument has a wrong type.
+        ConfigError: The preset or file does not exist, or something in it is wrong; the error lists all problems.
+        ArgumentError: An argument has the wrong type.
     """
     texts = override_texts(overrides)
     path = _path_of(source)
@@ -78,7 +78,7 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
 
 
 def _config_of(tables: Table, path: Path | None, fidelity: str | None = None, texts: Sequence[str] = ()) -> Config:
-    """The config of a file's tables; without a path they name a preset alone."""
+    """Config from a file's tables; without a path, the tables only name a preset."""
     origin = str(path or tables["preset"])
     own = tables if path is None else with_absolute_rules(tables, path.parent)
     over = [parse_override(text) for text in texts]
@@ -90,14 +90,14 @@ def _config_of(tables: Table, path: Path | None, fidelity: str | None = None, te
         problems.append(Problem(name, f"is not a setting: give it with {other}"))
     unknown: list[Problem] = []
     below = _layers_below(own, fidelity, unknown)
-    if unknown:  # without a preset nothing else can be judged
+    if unknown:  # without a valid preset and fidelity nothing else can be checked
         raise ConfigError(origin, [*problems, *unknown])
     name = {"name": origin if path is None else _name_of(path)}
     return _from_layers([name, *below], [own, *changes], f"{origin}, with changes" if changes else origin, problems)
 
 
 def load_config_text(text: str, path: Path) -> Config:
-    """As `load_config` of a file whose text has been read.
+    """Loads a config from text that was read from a file, as `load_config` does.
 
     Raises:
         ConfigError: Something in it is wrong; the error lists all problems.
@@ -106,7 +106,7 @@ def load_config_text(text: str, path: Path) -> Config:
 
 
 def parse_config(text: str, origin: str) -> Config:
-    """The config of a complete TOML text, as `dump_toml` writes it.
+    """Loads a config from a complete TOML text, as `dump_toml` writes it.
 
     Raises:
         ConfigError: Something in it is wrong or missing.
@@ -122,12 +122,12 @@ def is_modified(config: Config) -> bool:
 
 
 def changed_settings(config: Config) -> list[tuple[str, Any, Any]]:
-    """The settings in which a config differs from its preset and fidelity; none where the preset is not known.
+    """Lists the settings in which a config differs from its preset and fidelity; empty if the preset is unknown.
 
-    Where its species are other ones than the preset's only one, each is compared with that one.
+    If the preset has one species and the config has others, each is compared with the preset's.
 
     Returns:
-        (path, value in the preset, value in the config) in order, as `diff` gives them.
+        (path, value in the preset, value in the config) in order, as from `diff`.
     """
     if config.preset not in PRESETS:
         return []
@@ -140,21 +140,21 @@ def changed_settings(config: Config) -> list[tuple[str, Any, Any]]:
 
 @cache
 def describe_preset(name: str) -> str:
-    """What a preset is, in one sentence."""
+    """Description of a preset, in one sentence."""
     return read_toml(_FOLDER / "presets" / f"{name}.toml")["description"]
 
 
 @cache
 def describe_fidelity(name: str) -> str:
-    """What a fidelity is, in one sentence."""
+    """Description of a fidelity, in one sentence."""
     return read_toml(_FOLDER / "overlays" / f"{name}.toml")["description"]
 
 
 def override_texts(overrides: Iterable[str]) -> list[str]:
-    """The overrides as a list.
+    """Returns overrides as a list; a single string becomes a list of one.
 
     Raises:
-        ArgumentError: They are something else.
+        ArgumentError: The overrides are not strings.
     """
     if not isinstance(overrides, Iterable):
         raise ArgumentError(f"overrides = {brief(repr(overrides))}: must be a list of texts such as energy.initial=20")
@@ -166,7 +166,7 @@ def override_texts(overrides: Iterable[str]) -> list[str]:
 
 
 def _name_of(path: Path) -> str:
-    """The name of a run whose file gives none: the file's own name, in characters that every folder's name can have."""
+    """Default name of a run: the config file's name, reduced to characters that are valid in any folder name."""
     plain = unicodedata.normalize("NFKD", path.stem).encode("ascii", "ignore").decode()
     return re.sub(r"[^A-Za-z0-9._-]+", "-", plain).strip(".-")[:80] or "config"
 
@@ -189,7 +189,7 @@ def _path_of(source: str | Path) -> Path | None:
 
 
 def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> list[Table]:
-    """The layers below a file; sets the names of preset and fidelity in `own`."""
+    """Layers below a file; also sets the preset and fidelity in `own`."""
     if own.get("complete") is True:
         if fidelity not in (None, own.get("fidelity")):
             message = "the file already has all settings, so a fidelity changes none; start from its preset instead"
@@ -211,9 +211,9 @@ def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> 
 
 
 def _mistyped_species(below: Table, overrides: list[Table]) -> list[Problem]:
-    """Species that overrides name, and that are hardly new ones: of almost the same name as one that is there.
+    """Problems for species in overrides whose names are almost those of existing species.
 
-    A new species takes the place of the only one that has no name, so a typing error would leave no other.
+    A new species replaces a single unnamed one, so a misspelled name would leave no other species.
     """
     known = below.get("species")
     there = list(known) if isinstance(known, dict) and known else [ONLY]
@@ -226,9 +226,9 @@ def _mistyped_species(below: Table, overrides: list[Table]) -> list[Problem]:
 
 
 def _from_layers(below: list[Table], above: list[Table], origin: str, found: Sequence[Problem] = ()) -> Config:
-    """The config of layers of tables, the lowest first; `above` are those of the user: a file, then overrides.
+    """Config from layers of tables, lowest first; `above` are the user's layers: a file, then overrides.
 
-    Problems that were found before are told with the others.
+    Problems in `found` are reported with the others.
     """
     found = [*found, *(problem for layer in above for problem in renamed(layer))]
     complete = above[0].get("complete") is True
@@ -245,13 +245,13 @@ def _from_layers(below: list[Table], above: list[Table], origin: str, found: Seq
 
 
 def _species_of(tables: Table) -> tuple[str, ...]:
-    """The names of the species, as far as there are any."""
+    """Names of the species, if the tables have valid ones."""
     species = tables.get("species")
     return tuple(species) if isinstance(species, dict) else ()
 
 
 def _schema_problems(tables: Table, complete: bool) -> Iterator[Problem]:
-    """Takes the version of the schema and the mark of a complete file from the tables; yields what is wrong."""
+    """Removes the schema version and the mark of a complete file from the tables; yields problems with them."""
     tables.pop("complete", None)
     schema = tables.pop("schema", None if complete else SCHEMA)
     if schema != SCHEMA:
@@ -260,7 +260,7 @@ def _schema_problems(tables: Table, complete: bool) -> Iterator[Problem]:
 
 
 def _require_complete(config: Config, tables: Table, origin: str) -> None:
-    """ConfigError: a file that says it is complete lacks a setting, which would have a default that nobody chose."""
+    """Raises ConfigError if a file marked as complete lacks a setting, as its default would be nobody's choice."""
     problems = [
         Problem(path, f"is missing in a file that says it is complete; {setting.allowed}")
         for path, setting, _ in leaves(config)
@@ -271,7 +271,7 @@ def _require_complete(config: Config, tables: Table, origin: str) -> None:
 
 
 def _says(tables: Table, path: str) -> bool:
-    """Whether tables have something at a path; names in it may have points."""
+    """Whether tables have something at a path whose names may contain dots."""
     try:
         value_at(tables, path)
     except (ValueError, AttributeError):
@@ -280,12 +280,12 @@ def _says(tables: Table, path: str) -> bool:
 
 
 def _preset_layers(name: str) -> list[Table]:
-    """A preset and the presets that it is based on, the lowest first."""
+    """A preset and the presets that it is based on, lowest first."""
     return [{key: value for key, value in own.items() if key not in FIDELITIES} for own in _preset_files(name)]
 
 
 def _own_fidelity(preset: str, fidelity: str) -> list[Table]:
-    """What a preset and those that it is based on have beside a fidelity's own changes, the lowest first."""
+    """Settings that a preset and its base presets add to a fidelity's own, lowest first."""
     return [own[fidelity] for own in _preset_files(preset) if fidelity in own]
 
 

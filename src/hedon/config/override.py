@@ -12,10 +12,10 @@ _WORD = re.compile(r"[A-Za-z_#][\w.#/-]*")
 
 
 def parse_override(text: str) -> Table | Problem:
-    """Reads `path=value` as nested tables.
+    """Parses `path=value` into nested tables.
 
     Returns:
-        The tables, or what is wrong with the text.
+        The tables, or the problem with the text.
     """
     path, sign, value_text = text.partition("=")
     names = parse_path(path.strip())
@@ -31,7 +31,7 @@ def parse_override(text: str) -> Table | Problem:
 
 
 def parse_path(path: str) -> list[str]:
-    """The names of a path, without the quotes around them; none if it is no path."""
+    """Names in a path, without quotes; empty for an invalid path."""
     names, at = [], 0
     while match := _PART.match(path, at):
         names.append(match[1] or match[2])

@@ -1,4 +1,4 @@
-"""The problems of a config: each with its place, what is allowed, and the nearest valid name."""
+"""Problems of a config, each with its place, the allowed values, and the nearest valid name."""
 
 import json
 import math
@@ -14,20 +14,20 @@ from hedon.error import HedonError
 from hedon.text import LINE, brief
 
 SMALLEST = 2.0**-126
-"""Smallest number above 0 that the engine tells from 0: it flushes what is denormal."""
+"""Smallest positive number that the engine distinguishes from 0; it flushes denormal numbers to 0."""
 SHOWN = 20
-"""Most problems that a message lists."""
+"""Maximum number of problems listed in a message."""
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One problem to fix.
+    """One problem in a config.
 
     Attributes:
-        path: Where it is: "food.normal.growth_rate"; "" for the source as a whole.
+        path: Its place: "food.normal.growth_rate"; "" for the source as a whole.
         message: What is wrong and what is allowed.
         value: The value there, as text; None if it would not help.
-        nearest: A valid name close to the one that was given, if there is one.
+        nearest: A valid name close to the given one, if there is one.
     """
 
     path: str
@@ -44,11 +44,11 @@ class Problem:
 
 
 class ConfigError(HedonError):
-    """A config that cannot be used. It has all problems; its text lists the first ones and says how many there are.
+    """An invalid config. It holds all problems; its message lists the first ones and gives their number.
 
     Attributes:
         origin: The preset or file that was read.
-        problems: What is wrong, in the order of the file if there is one.
+        problems: All problems, in the order of the file if there is one.
     """
 
     def __init__(self, origin: str, problems: Iterable[Problem]) -> None:
@@ -66,7 +66,7 @@ class Check:
     """Collects the problems of a config.
 
     Args:
-        config: what is checked.
+        config: The config to check.
     """
 
     def __init__(self, config: Any) -> None:
@@ -74,26 +74,26 @@ class Check:
         self.problems: list[Problem] = []
 
     def add(self, path: str, rule: str, near: str | None = None) -> None:
-        """Adds a problem that no single value shows."""
+        """Adds a problem that is not due to a single value."""
         self.problems.append(Problem(path, rule, nearest=near))
 
     def need(self, good: bool, path: str, rule: str, value: Any = None, near: str | None = None) -> None:
-        """Adds a problem unless all is good."""
+        """Adds a problem unless `good`."""
         if not good:
             shown = format_value(value_at(self.config, path) if value is None else value)
             self.problems.append(Problem(path, rule, shown, near))
 
     def match(self, pattern: str, path: str, rule: str) -> None:
-        """Adds a problem unless the text at a path matches a pattern as a whole."""
+        """Adds a problem unless the string at a path fully matches a pattern."""
         self.need(bool(re.fullmatch(pattern, value_at(self.config, path))), path, rule)
 
     def has(self, start: str) -> bool:
-        """Whether there is a problem whose path starts so."""
+        """Whether any problem's path starts with `start`."""
         return any(problem.path.startswith(start) for problem in self.problems)
 
 
 def folded(problems: Iterable[Problem], species: Sequence[str]) -> list[Problem]:
-    """The same problems, each once under the path of a file's default where all species have it."""
+    """Merges each problem that all species share into one under the path of the file's default."""
     found: list[Problem] = list(problems)
     short: dict[Problem, set[Problem]] = {}
     for problem in found:
@@ -106,7 +106,7 @@ def folded(problems: Iterable[Problem], species: Sequence[str]) -> list[Problem]
 
 
 def format_value(value: Any) -> str:
-    """A value as TOML writes it; a table that has more than numbers as "a table"."""
+    """Formats a value as TOML; a table with anything but numbers becomes "a table"."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, bool):
@@ -121,7 +121,7 @@ def format_value(value: Any) -> str:
 
 
 def single(value: float) -> float:
-    """A number as the engine holds it, in 32 bits: infinite where these end, 0 where they lose precision."""
+    """Converts a number to the engine's 32 bits: infinite beyond their range, 0 where they lose precision."""
     try:
         rounded = struct.unpack("f", struct.pack("f", value))[0]
     except OverflowError:
@@ -130,8 +130,8 @@ def single(value: float) -> float:
 
 
 def nearest(name: str, names: Iterable[str], alike: float = 0.6) -> str | None:
-    """The valid name closest to the given one, or None if none is close."""
-    if len(name) > LINE:  # no valid name is so long, and a comparison would take long
+    """The closest valid name, or None if none is close."""
+    if len(name) > LINE:  # longer than any valid name, and slow to compare
         return None
     matches = get_close_matches(name, list(names), n=1, cutoff=alike)
     return matches[0] if matches else None

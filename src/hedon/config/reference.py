@@ -1,4 +1,4 @@
-"""The reference page of all settings: `python -m hedon.config.reference > docs/config.md`."""
+"""Generates the reference page of all settings: `python -m hedon.config.reference > docs/config.md`."""
 
 import sys
 from collections.abc import Iterator
@@ -47,7 +47,7 @@ code's.
 
 
 def reference() -> str:
-    """The whole page, in Markdown."""
+    """The whole page in Markdown."""
     names = _table(("preset", "what it is"), ((f"`{name}`", describe_preset(name)) for name in PRESETS))
     overlays = _table(("fidelity", "what it is"), ((f"`{name}`", describe_fidelity(name)) for name in FIDELITIES))
     return "\n".join([_HEAD, names, overlays, *_sections(Settings(), ""), _channels()]).rstrip() + "\n"
@@ -63,7 +63,7 @@ known only when a step is done: who observes it gets that of the step before.
 
 
 def _channels() -> str:
-    """The part of the page on channels."""
+    """The page's part on channels."""
 
     def row(source: Source) -> tuple[str, ...]:
         names, where = SEVERAL[source.of] if isinstance(source.of, str) else (source.of, "")
@@ -76,7 +76,7 @@ def _channels() -> str:
 
 
 def _sections(default: object, path: str) -> Iterator[str]:
-    """The parts of the page on a section as it is by default, and on those within it."""
+    """The page's parts on a section, with its defaults, and on its inner sections."""
     section = type(default)
     yield f"## `[{path}]`\n" if path else "## At the top\n"
     yield f"{getdoc(section)}\n"

@@ -1,4 +1,4 @@
-"""Names of settings and choices that were retired: each is refused with the one that replaced it."""
+"""Retired names of settings and choices; the error that refuses one gives its replacement."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -33,31 +33,31 @@ MOVED = {
     "toxin.observed": "store.toxin.observed",
     "genome.set_point_toxin": "store.toxin.set_point",
 }
-"""Settings of a file that have another path now."""
+"""New paths of settings of a file, by their old paths."""
 GIVEN = ("energy", "nutrient", "toxin")
-"""What a kind of food gave by settings of its own, before it had `gives`."""
+"""Stores for which a kind of food had settings of its own before `gives` existed."""
 VALUES = {
     "learning.policy": {"still": "idle", "frozen": "fixed"},
     "world.mutation_noise": {"frozen": "tabulated"},
     "world.parents": {"old_slots": "resident_slots"},
     "reward.family": {"fed": "above", "hungry": "below", "by_age": "between"},
 }
-"""Choices of settings that have other names now, by the paths of today."""
+"""New names of choices, by the settings' current paths and the old names."""
 FIDELITY_NOW = {"text": "as_printed"}
-"""Fidelities that have other names now."""
+"""New names of fidelities."""
 GATES = {"by_age": "age"}
-"""Families of rewards whose gate a file must name now, by their names before."""
+"""Gates that a file must now name, by the old names of reward families."""
 SENSES = ("see", "smell")
-"""Sections of `reward` whose terms are among those of `reward.pay` now."""
+"""Former sections of `reward`, whose terms are now in `reward.pay`."""
 
 
 def _owners(tables: Table) -> dict[str, Table]:
-    """What has settings of a species, by how paths in it begin: the file itself, and each species."""
+    """Tables that can hold settings of a species, by path prefix: the file itself and each species."""
     return {"": tables} | {f"species.{name}.": own for name, own in _tables(tables.get("species")).items()}
 
 
 def _moves(tables: Table) -> Iterator[tuple[str, str]]:
-    """Each path of the tables that is another one now, and that one."""
+    """Yields each old path in the tables with its new path."""
     for place, own in _owners(tables).items():
         for old, new in MOVED.items():
             if has(own, old.split(".")):
@@ -70,7 +70,7 @@ def _moves(tables: Table) -> Iterator[tuple[str, str]]:
 
 
 def renamed(tables: Table) -> Iterator[Problem]:
-    """Yields each setting that has another path now, and each choice that has another name."""
+    """Yields a problem for each setting with an old path and each choice with an old name."""
     for old, new in _moves(tables):
         yield Problem(old, f"is called {new} now")
     for place, own in _owners(tables).items():
@@ -83,7 +83,7 @@ def renamed(tables: Table) -> Iterator[Problem]:
 
 
 def new_path(path: str) -> str | None:
-    """What a setting is called now that another version had at this path; None if none had it."""
+    """Current path of a setting that another version had at this path; None if no version had it."""
     names = path.split(".")
     if len(names) == 3 and names[0] == "food" and names[2] in GIVEN:
         return f"food.{names[1]}.gives.{names[2]}"
@@ -94,5 +94,5 @@ def new_path(path: str) -> str | None:
 
 
 def _tables(value: Any) -> dict[str, Any]:
-    """The tables in a table; none where there is none."""
+    """Entries of a table that are tables; empty for anything else."""
     return {name: each for name, each in value.items() if isinstance(each, dict)} if isinstance(value, dict) else {}

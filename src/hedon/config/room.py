@@ -1,25 +1,25 @@
-"""What the engine has room for. `hedon.config.header` tells the engine these numbers."""
+"""Capacity limits of the engine. `hedon.config.header` writes them into its header."""
 
 MAX_SPECIES = 4
-"""Most species."""
+"""Maximum number of species."""
 MAX_FOOD_KINDS = 8
-"""Most kinds of food."""
+"""Maximum number of food kinds."""
 MAX_OBSTACLES = 256
-"""Most obstacles."""
+"""Maximum number of obstacles."""
 MAX_RAYS = 32
-"""Most rays of an agent."""
+"""Maximum number of rays per agent."""
 MAX_TOUCH_BITS = 128
-"""Most types times touch sectors."""
+"""Maximum number of types times touch sectors."""
 MAX_STORES = 8
-"""Most stores of a species, energy among them."""
+"""Maximum number of stores per species, including energy."""
 MAX_QUERIES = 4
-"""Most queries of a species about its neighbors."""
+"""Maximum number of neighbor queries per species."""
 MAX_OBSERVED = 15
-"""Most that a species observes of its stores, and of smells times noses, together."""
+"""Maximum number of observed stores plus smells times noses, per species."""
 MAX_GENES = 64
-"""Most genes of a genome."""
+"""Maximum number of genes per genome."""
 MAX_FORCE = 1e6
-"""Largest force of a motor, as for all numbers: squares of it are finite [mass·u/s²]."""
+"""Largest force of a motor; as for all numbers, its square is finite [mass·u/s²]."""
 MAX_DISTANCE = 1e6
 """Largest standard deviation of a child's place around its parent [u]."""
 MAX_FACTOR = 1000.0

@@ -1,4 +1,4 @@
-"""Where the file of a rule is: a TOML file names it relative to itself, what is typed to the current folder."""
+"""Paths of rule files, relative to the TOML file that names them or, in overrides, to the current folder."""
 
 import re
 from collections.abc import Mapping
@@ -9,20 +9,20 @@ from hedon.config.schema.settings import Settings
 from hedon.config.schema.species import RULE_USES
 
 RULE_PATTERN = r"(.+\.py):([A-Za-z_]\w*)(?:@([0-9a-f]{16}))?"
-"""A rule: its file, its function and, once a run has it, the digest of the file."""
+"""A rule: its file, its function and, once a run uses it, the file's digest."""
 
 
 def rule_places(config: Settings) -> tuple[str, ...]:
-    """The places of all rules of a config."""
+    """References to all rules of a config, as `rule` settings."""
     places = (getattr(species, use).rule for species in config.species.values() for use in RULE_USES)
     return tuple(place for place in places if place)
 
 
 def absolute_rule(place: Any, folder: Path) -> Any:
-    """The place of a rule with the absolute path of its file, if that is relative to `folder`.
+    """A reference to a rule with the absolute path of its file, if that is relative to `folder`.
 
-    One with a digest stays as it is: a run that has it keeps its text, wherever the file is by now. So does what is no
-    place of a rule, which is refused later.
+    A reference with a digest is unchanged, because the run keeps the rule's text wherever the file is now. An invalid
+    reference is unchanged too, and refused later.
     """
     match = re.fullmatch(RULE_PATTERN, place) if isinstance(place, str) else None
     if match is None or match[3] or "\0" in place:
@@ -31,7 +31,7 @@ def absolute_rule(place: Any, folder: Path) -> Any:
 
 
 def with_absolute_rules(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables of a config with the absolute paths of the files of rules."""
+    """Tables of a config with absolute paths of rule files."""
     found = dict(tables)
     for name, value in tables.items():
         if isinstance(value, dict):

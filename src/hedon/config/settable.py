@@ -1,4 +1,4 @@
-"""Where the engine has the numbers that genes may set: `python -m hedon.config.settable > engine/config/settable.h`."""
+"""Generates the engine's list of gene-set numbers: `python -m hedon.config.settable > engine/config/settable.h`."""
 
 import sys
 

@@ -1,20 +1,20 @@
-"""What a gene is called where people read it."""
+"""Titles of genes for readers."""
 
 from collections.abc import Sequence
 
 from hedon.config.layout import EXTRA
 
 _ADJECTIVES = ("normal", "poor")
-"""Names of the presets' kinds of food that want a noun."""
+"""Names of food kinds in presets that need a noun."""
 
 
 def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> dict[str, str]:
-    """What the panel of each weight is called: those that enter the reward, and the first neutral gene."""
+    """Titles of weights' panels: those in the reward, and the first neutral gene."""
     return {name: weight_title(name) for name in reward_names} | dict.fromkeys(neutral_names[:1], "neutral gene")
 
 
 def weight_title(name: str) -> str:
-    """What a gene is called: the weight of action, of a food or another term, of seeing or smelling, or by its name."""
+    """Title of a gene: the weight of action, of a food or another term, of seeing or smelling, or else its name."""
     for ending, said in (("_old", ", when old"), ("_scale", ", power of ten")):
         if name.startswith("w_") and name.endswith(ending):
             return weight_title(name.removesuffix(ending)) + said

@@ -1,4 +1,4 @@
-"""Reads a TOML file or text into plain tables, and refuses what is too large or too deep to be a config."""
+"""Reads TOML into plain tables, and refuses input that is too large or too deep to be a config."""
 
 import tomllib
 from collections.abc import Iterator
@@ -9,26 +9,26 @@ from hedon.config.layer import Table
 from hedon.config.problem import ConfigError, Problem
 
 MAX_BYTES = 1_000_000
-"""Size of the largest config file [byte]; the largest valid config has about 30,000."""
+"""Maximum size of a config file [byte]; the largest valid config has about 30,000."""
 MAX_VALUES = 5_000
-"""Most names and values in a config; the largest number of walls and centers gives 1,500."""
+"""Maximum number of names and values in a config; the maximum number of walls and centers gives 1,500."""
 MAX_DEPTH = 8
-"""Most levels of tables and lists inside one another; settings need five."""
+"""Maximum nesting of tables and lists; settings need five levels."""
 MAX_DIGITS = 1000
-"""Most digits of an integer. Python can read a few thousand. Smaller integers are checked by their setting."""
+"""Maximum digits of an integer. Python can read a few thousand. Settings check smaller integers themselves."""
 
 
 def read_toml(path: Path) -> Table:
-    """Reads a file.
+    """Reads a TOML file.
 
     Raises:
-        ConfigError: it cannot be read, or it is not TOML that could be a config.
+        ConfigError: The file cannot be read, or it is not TOML that could be a config.
     """
     origin = str(path)
     try:
         with path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)
-    except OSError as error:  # of a folder Windows says that permission is denied
+    except OSError as error:  # for a folder, Windows reports denied permission
         said = "it is a folder" if path.is_dir() else error.strerror
         raise ConfigError(origin, [Problem("", f"cannot be read: {said}")]) from None
     except ValueError as error:  # a path with a null character
@@ -43,10 +43,10 @@ def read_toml(path: Path) -> Table:
 
 
 def parse_toml(text: str, origin: str) -> Table:
-    """Reads a text.
+    """Parses a TOML text.
 
     Raises:
-        ConfigError: It is not TOML that could be a config.
+        ConfigError: The text is not TOML that could be a config.
     """
     try:
         tables = tomllib.loads(text)
@@ -55,17 +55,17 @@ def parse_toml(text: str, origin: str) -> Table:
         raise ConfigError(origin, [Problem("", f"is not valid TOML: {error}{hint}")]) from None
     except RecursionError:
         raise ConfigError(origin, [_TOO_DEEP]) from None
-    except ValueError:  # Python does not read integers of thousands of digits
+    except ValueError:  # Python refuses integers of thousands of digits
         raise ConfigError(origin, [_TOO_LONG]) from None
     require_plain(tables, origin)
     return tables
 
 
 def require_plain(tables: Any, origin: str) -> None:
-    """Refuses tables that are deeper or larger than a config can be, and integers with too many digits.
+    """Refuses tables deeper or larger than a config can be, and integers with too many digits.
 
     Raises:
-        ConfigError: They are.
+        ConfigError: The tables exceed a limit.
     """
     problems = list(_oversize(tables))
     if problems:
@@ -73,7 +73,7 @@ def require_plain(tables: Any, origin: str) -> None:
 
 
 _ESCAPES = ("Unescaped", "Invalid hex value")
-"""How messages about `\\` in double quotes begin, as "C:\\own" and "C:\\Users" have it."""
+"""Starts of the parser's messages about `\\` in double quotes, as in "C:\\own" and "C:\\Users"."""
 _TOO_LONG = Problem("", f"has an integer of more than {MAX_DIGITS:,} digits")
 _TOO_DEEP = Problem("", f"has tables or lists nested deeper than {MAX_DEPTH} levels")
 

@@ -1,4 +1,4 @@
-"""Types: what senses can tell apart, and which of them a species eats, sees, touches and smells."""
+"""Types: what senses can distinguish, and which types a species eats, sees, touches and smells."""
 
 from collections.abc import Sequence
 
@@ -6,20 +6,20 @@ from hedon.config.schema.settings import Settings
 from hedon.config.schema.species import EVERYTHING, SpeciesConfig
 
 WALL = "wall"
-"""What senses call a wall."""
+"""Type of a wall."""
 OBSTACLE = "obstacle"
-"""What senses call an obstacle, in worlds that have some."""
+"""Type of an obstacle, in worlds with obstacles."""
 SOLID = (WALL, OBSTACLE)
-"""What every species sees and collides with, where it is."""
+"""Types that every species sees and collides with, if they exist."""
 
 
 def types(config: Settings) -> tuple[str, ...]:
-    """What senses may tell apart, in the engine's order: the species, the kinds of food, walls, and obstacles."""
+    """Types that senses can distinguish, in the engine's order: species, food kinds, walls, obstacles."""
     return (*config.species, *config.food, *(SOLID if config.obstacle.count else (WALL,)))
 
 
 def diet(config: Settings, species: SpeciesConfig) -> dict[str, float]:
-    """What a species eats: factors by name."""
+    """Factors of what a species eats, by name."""
     return {
         each: factor
         for name, factor in species.diet.eats
@@ -29,10 +29,10 @@ def diet(config: Settings, species: SpeciesConfig) -> dict[str, float]:
 
 
 def hunted(config: Settings) -> str:
-    """The first species that another one eats.
+    """The first species that another species eats.
 
     Raises:
-        StopIteration: no species is eaten by another.
+        StopIteration: No species eats another.
     """
     return next(name for name in config.species if hunters(config, name))
 
@@ -43,27 +43,27 @@ def hunters(config: Settings, name: str) -> tuple[str, ...]:
 
 
 def chosen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
-    """The types that a list of names stands for, in order; walls and obstacles are always among them."""
+    """Types selected by a list of names, in order; walls and obstacles are always among them."""
     every = types(config)
     return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
 
 
 def look(config: Settings, name: str) -> str:
-    """The type that agents see where one of this type is."""
+    """The type that agents see in place of this type."""
     return (config.food[name].looks_like or name) if name in config.food else name
 
 
 def seen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
-    """The types that a list of names stands for to rays: what looks like another type is not told apart."""
+    """Types that rays distinguish for a list of names; a type that looks like another is left out."""
     return tuple(name for name in chosen(config, names) if look(config, name) == name)
 
 
 def asked_for(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
-    """The types that a query finds by a list of names, in order: species and kinds of food."""
+    """Types that a query finds for a list of names, in order: species and food kinds."""
     every = config.species if EVERYTHING in names else ()
     return tuple(name for name in (*config.species, *config.food) if name in names or name in every)
 
 
 def smelled(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
-    """The sources of smell that a list of names stands for, in order: species and kinds of food."""
+    """Sources of smell selected by a list of names, in order: species and food kinds."""
     return tuple(name for name in (*config.species, *config.food) if name in names or EVERYTHING in names)

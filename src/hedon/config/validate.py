@@ -1,4 +1,4 @@
-"""Checks all input: turns plain nested tables into settings, or raises one error that names all problems."""
+"""Checks all input: builds settings from plain nested tables, or raises one error that lists all problems."""
 
 import math
 import re
@@ -19,10 +19,10 @@ S = TypeVar("S", bound=Settings)
 
 
 def build(root: type[S], tables: Mapping[str, Any], origin: str, found: Sequence[Problem] = ()) -> S:
-    """Builds a config from nested tables; settings that are not given have their defaults.
+    """Builds a config from nested tables; missing settings get their defaults.
 
     Raises:
-        ConfigError: A type, a range or a name is wrong, or settings contradict one another; or something was found.
+        ConfigError: A type, range or name is wrong, settings contradict one another, or `found` has problems.
     """
     require_plain(tables, origin)
     more: list[Problem] = []
@@ -30,7 +30,7 @@ def build(root: type[S], tables: Mapping[str, Any], origin: str, found: Sequence
     known = [_parts(problem.path) for problem in found]
     problems = [each for each in more if not _is_at(_parts(each.path), known)]
     wrong = [*known, *(_parts(problem.path) for problem in problems)]
-    # What is wrong by itself has its default now; contradictions are looked for among the rest.
+    # Invalid values have their defaults now; contradictions are sought among the rest.
     rest = (each for each in contradictions(config) if not _is_at(_parts(each.path), wrong))
     problems.extend(rest)
     if found or problems:
@@ -39,12 +39,12 @@ def build(root: type[S], tables: Mapping[str, Any], origin: str, found: Sequence
 
 
 def rebuild(config: S, values: Mapping[str, Any], origin: str) -> S:
-    """The same config with other values of some settings: only these are checked, and contradictions.
+    """Returns the config with some values replaced; checks only these, and contradictions.
 
-    It takes a fifth of the time of `build`: sweeps change the same few settings many times.
+    It takes a fifth of the time of `build`, for sweeps that change the same few settings many times.
 
     Raises:
-        ConfigError: A type or a range is wrong, or settings contradict one another.
+        ConfigError: A type or range is wrong, or settings contradict one another.
         KeyError: The config has no such setting.
     """
     problems: list[Problem] = []
@@ -56,7 +56,7 @@ def rebuild(config: S, values: Mapping[str, Any], origin: str) -> S:
 
 
 def _rebuilt(section: T, path: str, values: Iterable[tuple[Sequence[str], Any]], problems: list[Problem]) -> T:
-    """A section, or a table of sections, with other values; adds what is wrong to `problems`, and leaves it out."""
+    """A section, or a table of sections, with values replaced; invalid values are skipped and added to `problems`."""
     own, inner = (settings(type(section)), sections(type(section))) if is_dataclass(section) else ({}, {})
     new: dict[str, Any] = {}
     below: dict[str, list[tuple[Sequence[str], Any]]] = {}
@@ -78,7 +78,7 @@ def _rebuilt(section: T, path: str, values: Iterable[tuple[Sequence[str], Any]],
 
 
 def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[Problem], base: T | None = None) -> T:
-    """A section from its table, with the defaults of `base`; adds what is wrong to `problems`, and leaves it out."""
+    """A section from its table, with the defaults of `base`; invalid values are skipped and added to `problems`."""
     own, inner, values = settings(kind), sections(kind), {}
     default: Any = kind() if base is None else base
     for name, value in zip(map(str, table), table.values(), strict=True):
@@ -106,7 +106,7 @@ def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[
 
 
 def _plain(value: Any) -> Any:
-    """NumPy's numbers as Python's."""
+    """Converts NumPy numbers to Python's."""
     if isinstance(value, Mapping):
         return {str(name): _plain(each) for name, each in value.items()}
     if isinstance(value, list | tuple):
@@ -115,7 +115,7 @@ def _plain(value: Any) -> Any:
 
 
 def _setting_problems(setting: Setting, value: Any, path: str) -> Iterator[Problem]:
-    """What is wrong with one value: its type, its length, or a number in it."""
+    """Yields the problems of one value: its type, its length, or a number in it."""
     limits, must = setting.doc.range, f"must be {setting.allowed}"
     wrong: dict[str, Any] = dict(_misfits(setting.type, value))
     number = setting.type in (int, float)
@@ -137,7 +137,7 @@ def _setting_problems(setting: Setting, value: Any, path: str) -> Iterator[Probl
 
 
 def _misfits(kind: Any, value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
-    """The parts of a value that are not of their type, each with its place: [2][0]."""
+    """Yields the parts of a value that have the wrong type, each with its index: [2][0]."""
     items = get_args(kind)
     if items and isinstance(items[0], str):
         if not isinstance(value, str) or value not in items:
@@ -162,12 +162,12 @@ def _is_a(kind: type, value: Any) -> bool:
         return isinstance(value, bool) and kind is bool
     if kind is float:
         return isinstance(value, int | float) and abs(value) <= sys.float_info.max  # False for NaN
-    # Half of a pair of UTF-16 is no text that a file could hold.
+    # A lone UTF-16 surrogate cannot be stored in a file.
     return isinstance(value, kind) and not (kind is str and re.search("[\ud800-\udfff]", value))
 
 
 def _numbers(value: Any, place: str = "") -> Iterator[tuple[str, float]]:
-    """The numbers in a list and in the lists in it, each with its place."""
+    """Yields the numbers in a list and its nested lists, each with its index."""
     for i, item in enumerate(value) if isinstance(value, list | tuple) else ():
         yield from _numbers(item, f"{place}[{i}]")
     if isinstance(value, int | float):
@@ -175,7 +175,7 @@ def _numbers(value: Any, place: str = "") -> Iterator[tuple[str, float]]:
 
 
 def _converted(kind: Any, value: Any) -> Any:
-    """A value of the right type with tuples for lists, and numbers with a point where a setting has them."""
+    """Converts lists to tuples, and integers to floats if the setting has floats."""
     items = get_args(kind)
     if isinstance(value, dict):
         return {name: float(part) for name, part in value.items()}
@@ -185,16 +185,17 @@ def _converted(kind: Any, value: Any) -> Any:
 
 
 def _named_below(section: type, table: Mapping[str, Any], name: str) -> str | None:
-    """Where this is the name of a species, a kind of food, or the like: its path in the section."""
+    """If a name is that of an existing species, kind of food or the like, its path in the section."""
     repeated = (part for part, inner in sections(section).items() if inner.repeated)
     below = {part: table[part] for part in repeated if isinstance(table.get(part), Mapping)}
     return " or ".join(f"{part}.{name}" for part, each in below.items() if name in each) or None
 
 
 def _nearest_name(section: type, name: str) -> str | None:
-    """The name nearest to an unknown one in its section, else the paths of those that are called so or nearly so.
+    """The name nearest to an unknown one in its section, else the paths of settings with the same or almost the same
+    name.
 
-    Outside all sections the nearest of all names counts: `learing_rate` is no section `learning`.
+    Outside all sections, the nearest of all names counts, so `learing_rate` is not taken for the section `learning`.
     """
     outside = issubclass(section, Settings)
     own = [*settings(section), *sections(section), *(PER_SPECIES if outside else ())]
@@ -207,16 +208,16 @@ def _nearest_name(section: type, name: str) -> str | None:
 
 
 def _names(section: type) -> Iterator[str]:
-    """The names of all settings in the inner sections of a section."""
+    """Names of all settings in a section's inner sections."""
     for inner in sections(section).values():
         yield from settings(inner.type)
         yield from _names(inner.type)
 
 
 def _places(section: type, name: str, path: str = "") -> Iterator[str]:
-    """The paths of all settings of this name in the inner sections of a section, as a file has them."""
+    """Paths, as in a file, of all settings with this name in a section's inner sections."""
     for inner_name, inner in sections(section).items():
-        # A file has the sections of species at the top too.
+        # In a file, sections of species may also be at the top level.
         below = path if inner_name == "species" else f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
         if name in settings(inner.type):
             yield below + name
@@ -228,11 +229,11 @@ def _parts(path: str) -> list[str]:
 
 
 def _is_at(path: list[str], known: Iterable[list[str]]) -> bool:
-    """Whether one of some paths leads here, or to the default of a file for a species."""
+    """Whether a path overlaps a known one, itself or as a file's default for a species."""
     default = path[2:] if path[0] == "species" and len(path) > 2 else path
     return any(_overlap(path, each) or _overlap(default, each) for each in known)
 
 
 def _overlap(path: list[str], other: list[str]) -> bool:
-    """Whether two paths name the same setting, or one path names a section that holds the other."""
+    """Whether two paths name the same setting, or one names a section that contains the other."""
     return all(x == y for x, y in zip(path, other, strict=False))

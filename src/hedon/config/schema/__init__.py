@@ -1,1 +1,1 @@
-"""The settings, a dataclass per concern: meaning, unit, range, default, source. The root is `settings.py`."""
+"""The settings, one dataclass per topic: meaning, unit, range, default and source. The root is `settings.py`."""

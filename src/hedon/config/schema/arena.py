@@ -1,4 +1,4 @@
-"""The arena: a rectangle with rounded corners and, if wanted, inner walls."""
+"""The arena: a rectangle with rounded corners and optional inner walls."""
 
 import math
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ArenaConfig:
-    """Where the agents live."""
+    """The space in which agents live."""
 
     width: float = setting(480.0, "extent along x", "u", PAPER, gt=0, le=1e5, shapes=True)
     height: float = setting(360.0, "extent along y", "u", PAPER, gt=0, le=1e5, shapes=True)
@@ -35,10 +35,10 @@ class ArenaConfig:
 
 
 def outline(arena: ArenaConfig) -> list[tuple[float, float]]:
-    """The corners of the outer polygon, clockwise from the lower end of the left wall.
+    """Corners of the outer polygon, clockwise from the lower end of the left wall.
 
     Returns:
-        Points [u]: each is the start of one outer wall, which ends at the next point.
+        Points [u], each the start of an outer wall that ends at the next point.
     """
     w, h, r = arena.width, arena.height, arena.corner_radius
     if r == 0:
@@ -54,16 +54,16 @@ def outline(arena: ArenaConfig) -> list[tuple[float, float]]:
 
 
 def outer_count(arena: ArenaConfig) -> int:
-    """How many of the first `walls` make up the closed outer polygon."""
+    """Number of the first `walls` that form the closed outer polygon."""
     return 4 if arena.corner_radius == 0 else 4 * (arena.corner_chords + 1)
 
 
 def walls(arena: ArenaConfig) -> "NDArray[np.float32]":
-    """All walls: the outer polygon first, clockwise from the left wall, then the inner walls in their order.
+    """All walls: the outer polygon clockwise from the left wall, then the inner walls in their order.
 
     Returns:
-        (count, 4) float32: ax, ay, bx, by of each segment [u]. The inside of the outer polygon lies to
-        the right of a → b.
+        (count, 4) float32: ax, ay, bx, by of each segment [u]. The inside of the outer polygon is to the right of a →
+            b.
     """
     import numpy as np
 
@@ -73,12 +73,12 @@ def walls(arena: ArenaConfig) -> "NDArray[np.float32]":
 
 
 def is_inside(arena: ArenaConfig, x: float, y: float) -> bool:
-    """Whether a point [u] lies within the outer polygon (a point on a wall counts as inside).
+    """Whether a point [u] is within the outer polygon; a point on a wall counts as inside.
 
     Args:
-        arena: its settings.
-        x: place along its width [u].
-        y: place along its height [u].
+        arena: Settings of the arena.
+        x: Coordinate along its width [u].
+        y: Coordinate along its height [u].
     """
     points = outline(arena)
     return all(

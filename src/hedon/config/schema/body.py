@@ -1,4 +1,4 @@
-"""The body of an agent: its shape, what moves it and what it senses."""
+"""An agent's body: its shape, motors and senses."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -9,7 +9,7 @@ from hedon.config.room import MAX_RAYS
 
 @dataclass(frozen=True, slots=True)
 class BodyConfig:
-    """Sizes and mass."""
+    """Size and mass of the body."""
 
     radius: float = setting(10.0, "radius of an agent", "u", EITHER, gt=0, le=1e3)
     density: float = setting(0.1, "mass of an agent per area", "mass/u²", EITHER, gt=0, le=1e3)

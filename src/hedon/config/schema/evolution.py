@@ -1,4 +1,4 @@
-"""Evolution: the genome, how it mutates, and the reward that it defines."""
+"""Evolution: the genome, its mutation, and the reward that it defines."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -11,14 +11,14 @@ LEARNING_GENES = {
     "entropy_coef": "power of ten by which the weight of the entropy differs",
     "action_sd": "power of ten of the standard deviation of a newborn's actions",
 }
-"""What of learning a gene may set, with what the gene is."""
+"""Learning parameters that a gene may set, with the gene's description."""
 FAMILY_GENES = {
     "threshold": "power of ten by which the threshold of the reward differs",
     "threshold_width": "power of ten by which the width of that threshold differs",
 }
-"""What of the family of a reward a gene may set, with what the gene is."""
+"""Parameters of the reward family that a gene may set, with the gene's description."""
 GATED = ("above", "below", "between", "around")
-"""Families of rewards that have a gate, with a threshold."""
+"""Reward families that have a gate with a threshold."""
 MAX_EXPONENT = 2.0
 """Largest limit of genes that are powers of ten."""
 OF_ALL_GENES = {
@@ -28,12 +28,12 @@ OF_ALL_GENES = {
     "probability": "mutation_probability",
     "limit": "weight_limit",
 }
-"""What the mutation of one gene says, and the setting of `genome` that says it for all."""
+"""Settings of one gene's mutation, with the settings of `genome` that apply to all genes."""
 
 
 @dataclass(frozen=True, slots=True)
 class GeneConfig:
-    """How founders draw one gene: from a normal law, then clipped to ± `genome.weight_limit`."""
+    """Distribution of one gene among founders: a normal law, clipped to ± `genome.weight_limit`."""
 
     initial_mean: float = setting(0.0, "mean of the founders' gene", "", EITHER, ge=-1e3, le=1e3)
     initial_sd: float = setting(0.1, "standard deviation of the founders' gene", "", EITHER, ge=0, le=1e3)
@@ -41,7 +41,7 @@ class GeneConfig:
 
 @dataclass(frozen=True, slots=True)
 class MutationConfig:
-    """How one gene mutates, by the gene's name; what is not said here is as `[genome]` says for all genes."""
+    """Mutation of one gene, by the gene's name; values not set here come from `[genome]`."""
 
     law: Literal["cauchy", "student_t", "normal", "uniform"] = setting(
         "cauchy", "law of the noise added at birth", "", OURS
@@ -54,19 +54,18 @@ class MutationConfig:
 
 @dataclass(frozen=True, slots=True)
 class GenomeConfig:
-    """The weights of the reward, genes that set numbers, genes for rules, then neutral genes that have no effect.
+    """Genes: weights of the reward, genes that set numbers, genes for rules, and neutral genes without effect.
 
-    `[food.<kind>.gene]` says how founders draw the weight of a kind, `[genome.action]` that of action, `[genome.prey]`
-    that of each species that is eaten, `[genome.second]` the second gene of each weight where the family of the
-    reward has one, and `[genome.neutral]` each neutral gene.
-    `[genome.learning.NAME]` makes a gene of learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the
-    learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
-    actions, by 10^g. `[genome.family.NAME]` does so for threshold or threshold_width of the family of the reward.
-    `[genome.set.PATH]`, such as `[genome.set.sensor.ray_length]`, does so for a number of the body, the senses, the
-    motors, the stores, the hazard or births, within the limits of its setting; the gene is g_PATH, with `_` for each
-    dot.
-    `[genome.extra.NAME]` makes a gene extra_NAME that only rules in Python read (guide/rule.md).
-    `[genome.mutation.GENE]` gives one gene a mutation of its own.
+    Founders' weights are drawn as given by `[food.<kind>.gene]` for a kind of food, `[genome.action]` for action,
+    `[genome.prey]` for each species that is eaten, and `[genome.second]` for the second gene of each weight, if the
+    reward family has one; neutral genes as given by `[genome.neutral]`. `[genome.learning.NAME]` adds a gene for
+    learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the learning rate, the odds of the discount
+    gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's actions, by 10^g. `[genome.family.NAME]`
+    does the same for threshold or threshold_width of the reward family. `[genome.set.PATH]`, such as
+    `[genome.set.sensor.ray_length]`, does so for a number of the body, the senses, the motors, the stores, the hazard
+    or births, within the limits of its setting; the gene is named g_PATH, with `_` for each dot. `[genome.extra.NAME]`
+    adds a gene extra_NAME that only rules in Python read (guide/rule.md). `[genome.mutation.GENE]` gives one gene its
+    own mutation.
     """
 
     neutral_count: int = setting(
@@ -97,7 +96,7 @@ class GenomeConfig:
 
 @dataclass(frozen=True, slots=True)
 class PayConfig:
-    """A term of the reward for any channel, by the name of the term: coef·weight·channel. Its gene is `w_NAME`."""
+    """A reward term for any channel, by the name of the term: coef·weight·channel. Its gene is `w_NAME`."""
 
     channel: str = setting(
         "",
@@ -113,9 +112,9 @@ class PayConfig:
 class RewardConfig:
     """Reward: meal_coef·Σ weight·eaten + action_coef·weight·|force|/norm + Σ coef·weight·channel + drive reduction.
 
-    How a weight follows from its genes is the family. With x = (gate - threshold) / threshold_width and
-    σ(x) = 1/(1 + e^-x): `linear` w; `sinh` sinh(2.5 w); `scaled` 10^s·w with a second gene s; `above` w·σ(x) and
-    `below` w·σ(-x); `between` w + (w' - w)·σ(x) with a second gene w'; `around` 4·w·σ(x)·σ(-x). The gate is a channel.
+    The family defines how a weight follows from its genes. With x = (gate - threshold) / threshold_width and σ(x) =
+    1/(1 + e^-x): `linear` w; `sinh` sinh(2.5 w); `scaled` 10^s·w with a second gene s; `above` w·σ(x) and `below`
+    w·σ(-x); `between` w + (w' - w)·σ(x) with a second gene w'; `around` 4·w·σ(x)·σ(-x). The gate is a channel.
     """
 
     family: Literal["linear", "sinh", "scaled", "above", "below", "between", "around"] = setting(

@@ -46,7 +46,7 @@ class PlacementConfig:
 
 @dataclass(frozen=True, slots=True)
 class FoodConfig:
-    """One kind of food. `[food.<kind>.schedule.growth_rate]` and `.capacity` make these follow time."""
+    """A kind of food. `[food.<kind>.schedule.growth_rate]` and `.capacity` make these settings vary with time."""
 
     gives: dict[str, float] = setting(
         {"energy": 1.0},

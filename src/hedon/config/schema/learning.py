@@ -8,7 +8,7 @@ from hedon.config.field import CODE, EITHER, OURS, PAPER, setting
 
 @dataclass(frozen=True, slots=True)
 class LearningConfig:
-    """How agents choose actions, and learn: proximal policy optimization (Schulman et al. 2017) with GAE."""
+    """Action selection and learning: proximal policy optimization (Schulman et al. 2017) with GAE."""
 
     policy: Literal["ppo", "random", "idle", "external", "fixed"] = setting(
         "ppo",

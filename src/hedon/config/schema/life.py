@@ -1,4 +1,4 @@
-"""Birth and death: their probabilities per step, by age and energy."""
+"""Birth and death: probabilities per step as functions of age and energy."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HazardConfig:
-    """Probability of death, a part by energy and a part by age, of which `form` says what they are.
+    """Probability of death per step: the sum of a part by energy and a part by age, as `form` defines them.
 
     `age_energy` is kappa·(1 − 1/(1 + alpha_energy·exp(−beta_energy·e))) + alpha_age·exp(beta_age·age); the weights of
-    stores (`hazard_weight`) are on the first part. `gompertz` is the part by age alone, `constant` is kappa for all.
-    `[hazard.schedule.scale]` makes the whole of it follow time.
+    stores (`hazard_weight`) apply to the first part. `gompertz` is only the part by age, `constant` is kappa for all.
+    `[hazard.schedule.scale]` makes the whole hazard vary with time.
     """
 
     form: Literal["age_energy", "gompertz", "constant"] = setting(
@@ -50,10 +50,10 @@ class HazardConfig:
 
 @dataclass(frozen=True, slots=True)
 class BirthConfig:
-    """Probability of a child, which is born at a free place by its parent.
+    """Probability of a child, which is born at a free place near its parent.
 
-    `logistic` is kappa/(1 + exp(logit_offset − beta·energy)); `threshold` is kappa where beta·energy reaches
-    logit_offset, and 0 below.
+    `logistic` is kappa/(1 + exp(logit_offset − beta·energy)); `threshold` is kappa if beta·energy reaches logit_offset,
+    and 0 below.
     """
 
     form: Literal["logistic", "threshold"] = setting(
@@ -119,18 +119,18 @@ def distance_sd(arena: ArenaConfig, birth: BirthConfig) -> float:
     """Standard deviation of a child's place around its parent, along x and along y [u].
 
     Args:
-        arena: for its width [u].
-        birth: with the distance and its unit.
+        arena: Arena whose width [u] a relative distance refers to.
+        birth: Settings of the distance and its unit.
     """
     return birth.distance_sd * (arena.width if birth.distance_unit == "arena_width" else 1.0)
 
 
 def logistic_hazard(config: HazardConfig, energy: "NDArray[np.float64]") -> "NDArray[np.float64]":
-    """The part of `age_energy` by energy [1/step].
+    """The energy-dependent part of the `age_energy` hazard [1/step].
 
     Args:
-        config: the constants.
-        energy: [energy], any shape.
+        config: Constants of the hazard.
+        energy: Energy of the agents [energy], any shape.
     """
     import numpy as np
 
@@ -143,15 +143,15 @@ HAZARD_FORMS: dict[str, tuple[Callable[[HazardConfig, Any], Any], bool]] = {
     "gompertz": (lambda config, energy: 0.0 * energy, True),
     "constant": (lambda config, energy: config.kappa + 0.0 * energy, False),
 }
-"""The part of each form of the hazard that does not depend on age, and whether it has the part by age."""
+"""For each form of the hazard, the part that does not depend on age, and whether the part by age is added."""
 
 
 def logistic_birth(config: BirthConfig, energy: "NDArray[np.float64]") -> "NDArray[np.float64]":
-    """The chance of a child of the form `logistic` [1/step].
+    """Probability of a child in the form `logistic` [1/step].
 
     Args:
-        config: the constants.
-        energy: [energy], any shape.
+        config: Constants of the probability.
+        energy: Energy of the parents [energy], any shape.
     """
     import numpy as np
 
@@ -162,4 +162,4 @@ BIRTH_FORMS: dict[str, Callable[[BirthConfig, Any], Any]] = {
     "logistic": logistic_birth,
     "threshold": lambda config, energy: config.kappa * (config.beta * energy >= config.logit_offset),
 }
-"""The chance of a child [1/step] by each form of it."""
+"""Probability of a child [1/step] in each form."""

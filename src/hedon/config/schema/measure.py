@@ -1,4 +1,4 @@
-"""Measures of one's own: numbers of a world that reports, comparisons and plots show beside those of hedon."""
+"""User-defined measures: numbers of a world that reports, comparisons and plots show with hedon's own."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -10,11 +10,11 @@ MAX_MEASURES = 50
 
 @dataclass(frozen=True, slots=True)
 class MeasureConfig:
-    """A number of each world, or of each species in it, computed from its records.
+    """A number computed from the records of each world, or of each species in it.
 
     `[measure.NAME]` adds a number to summaries, tables, comparisons, power and plots, under its name. It changes no
-    world: runs with and without it have the same digest. `of` is an expression of SQL over the columns of one table,
-    which gives one number, as in "sum(births) / sum(agent_steps)". What the columns are is in docs/records.md.
+    world: runs with and without it have the same digest. `of` is an SQL expression over the columns of one table that
+    gives one number, as in "sum(births) / sum(agent_steps)". docs/records.md describes the columns.
     """
 
     of: str = setting("", "expression that gives the number, with aggregates such as sum, avg, min, max", "", OURS)

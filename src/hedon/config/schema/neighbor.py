@@ -1,4 +1,4 @@
-"""Queries: who and what is near an agent."""
+"""Queries about agents and foods near an agent."""
 
 from dataclasses import dataclass
 
@@ -7,13 +7,13 @@ from hedon.config.field import OURS, setting
 
 @dataclass(frozen=True, slots=True)
 class NeighborConfig:
-    """A query: who and what is near each agent of a species?
+    """A query about agents and foods near each agent of a species.
 
-    `[neighbor.NAME]` makes channels. As a step begins: NAME_count, living agents and foods within the range, without
-    itself; NAME_kin, those of them that are its parents or children or share a parent with it; NAME_distance [u] of the
-    nearest, the range where there is none; NAME_bearing [rad] of the nearest, from −π to π: 0 ahead, positive to the
-    left, 0 where there is none. When the step is done: NAME_meals, what the agents that are within the range then ate
-    in it. A query of foods alone has neither kin nor meals.
+    `[neighbor.NAME]` adds channels. At the start of a step: NAME_count, the number of other living agents and foods
+    within the range; NAME_kin, how many of them are its parents, children or siblings (agents that share a parent with
+    it); NAME_distance [u] of the nearest, or the range if there is none; NAME_bearing [rad] of the nearest, from −π to
+    π: 0 ahead, positive to the left, 0 if there is none. At the end of the step: NAME_meals, the meals in that step of
+    the agents then within the range. A query for foods only has neither kin nor meals.
     """
 
     of: tuple[str, ...] = setting(

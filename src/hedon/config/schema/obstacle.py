@@ -1,4 +1,4 @@
-"""Obstacles: solid polygons at random places, which may do harm."""
+"""Obstacles: solid polygons at random places, some of which may be harmful."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ SEQUEL = OURS + "; the code of the sequel"
 class ObstacleConfig:
     """Regular polygons that never move, at places and angles drawn for each world; agents see and feel them.
 
-    `[obstacle.schedule.harmful]` makes the share of them that do harm follow time.
+    `[obstacle.schedule.harmful]` makes the harmful share vary with time.
     """
 
     count: int = setting(0, "number of obstacles", "", OURS, ge=0, le=MAX_OBSTACLES, shapes=True)

@@ -1,4 +1,4 @@
-"""The rigid-body physics: time steps, the solving of contacts, damping."""
+"""Rigid-body physics: time steps, contact solver, damping."""
 
 import math
 from dataclasses import dataclass

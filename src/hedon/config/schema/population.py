@@ -1,4 +1,4 @@
-"""The population: its largest size and its size at the start."""
+"""The population: its maximum size and its initial size."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Schedules: factors that follow time, once or in seasons."""
+"""Schedules: factors that vary with time, once or seasonally."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -8,7 +8,7 @@ from hedon.config.field import OURS, setting
 
 @dataclass(frozen=True, slots=True)
 class ScheduleConfig:
-    """A factor that follows time, by the name of the setting that it multiplies."""
+    """A factor that varies with time, by the name of the setting that it multiplies."""
 
     points: tuple[tuple[int, float], ...] = setting(
         (),

@@ -1,4 +1,4 @@
-"""The root of a config: all settings of a run, and where they came from."""
+"""The root of a config: all settings of a run and their origin."""
 
 from dataclasses import dataclass
 
@@ -13,20 +13,20 @@ from hedon.config.schema.species import ONLY, SpeciesConfig
 from hedon.config.schema.world import WorldConfig
 
 PROVENANCE = ("name", "preset", "fidelity")
-"""Fields that say where a config came from; they change no result."""
+"""Fields that record where a config came from; they change no result."""
 
 
 def changes_worlds(path: str) -> bool:
-    """Whether a setting can change a world: all but where the config came from, and what is measured in its worlds."""
+    """Whether a setting can change a world; a config's origin and its measures cannot."""
     return path not in PROVENANCE and not path.startswith("measure.")
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """One run's settings. The defaults are the preset `baseline` with the fidelity `corrected`.
+    """Settings of one run. The defaults are the preset `baseline` with the fidelity `corrected`.
 
-    What stands beside `species` is the world. There is at least one species; the only one of a file without `[species]`
-    is called `agent`.
+    Sections outside `species` describe the world. There is at least one species; the only one of a file without
+    `[species]` is called `agent`.
     """
 
     name: str = setting("baseline", "name of the run", "", OURS)

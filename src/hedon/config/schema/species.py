@@ -1,4 +1,4 @@
-"""Species: everything that makes a kind of agent."""
+"""Species: all settings of a kind of agent."""
 
 import re
 from dataclasses import dataclass, fields
@@ -14,14 +14,14 @@ from hedon.config.schema.population import PopulationConfig
 from hedon.config.schema.store import ENERGY, EnergyConfig, StoreConfig
 
 ONLY = "agent"
-"""The name of the species of a file without `[species]`."""
+"""Name of the species of a file without `[species]`."""
 EVERYTHING = "*"
-"""In a list of names, what stands for all of them."""
+"""Stands for all names in a list of names."""
 
 
 @dataclass(frozen=True, slots=True)
 class DietConfig:
-    """What a species eats."""
+    """Foods and species that a species eats."""
 
     eats: tuple[tuple[str, float], ...] = setting(
         ((EVERYTHING, 1.0),),
@@ -39,7 +39,7 @@ class DietConfig:
 
 @dataclass(frozen=True, slots=True)
 class SpeciesConfig:
-    """What describes one species. In a file, `[species.NAME.energy]` has what differs from `[energy]`, and so on."""
+    """Settings of one species. In a file, `[species.NAME.energy]` overrides settings of `[energy]`, and so on."""
 
     body: BodyConfig = section(BodyConfig)
     motor: MotorConfig = section(MotorConfig)
@@ -57,16 +57,16 @@ class SpeciesConfig:
 
     @property
     def stores(self) -> dict[str, StoreConfig]:
-        """All its stores by name: energy, then the others in their order."""
+        """All stores by name: energy first, then the others in their order."""
         return {ENERGY: self.energy, **self.store}
 
 
 PER_SPECIES = tuple(each.name for each in fields(SpeciesConfig))
-"""The sections of a species. At the top of a file they are defaults for all its species."""
+"""Sections of a species. At the top level of a file they are the defaults of all species."""
 RULE_USES = ("reward", "hazard", "birth")
-"""The sections of a species that may have a rule in Python."""
+"""Sections of a species that may have a rule in Python."""
 
 
 def default_path(path: str) -> str:
-    """The path at the top of a file of what holds for all species: `birth.kappa` for `species.prey.birth.kappa`."""
+    """Path at the top level of a file that applies to all species: `birth.kappa` for `species.prey.birth.kappa`."""
     return re.sub(r"^species\.[^.]+\.", "", path)

@@ -1,4 +1,4 @@
-"""What an agent holds: energy, which every species has, and stores that a config names."""
+"""Stores that an agent holds: energy, which every species has, and others named in a config."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -7,17 +7,17 @@ from hedon.config.field import CODE, EITHER, OURS, PAPER, section, setting
 from hedon.config.schema.evolution import GeneConfig
 
 ENERGY = "energy"
-"""The store of every species, with a section and a ledger of its own."""
+"""The store of every species, with its own section and ledger."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoreConfig:
     """A store: held ← clip(held + Σ gives·eaten − action_cost·|force| − basic_cost − decay·held, 0, capacity).
 
-    `[store.NAME]` gives every species a store of this name, `[species.SPECIES.store.NAME]` gives it to one of them, and
-    `store.NAME = false` takes it from one. A new store must say its capacity; what else it does not say, it does not
-    do. `[food.<kind>]` says what a kind of food gives to each store, and how much of each it needs. `set_point` is the
-    law of the gene of the set point, where the reward has drive reduction.
+    `[store.NAME]` gives every species a store of this name, `[species.SPECIES.store.NAME]` gives it to one species, and
+    `store.NAME = false` removes it from one. A new store must set its capacity; it has no effect beyond the settings in
+    its section. `[food.<kind>]` sets how much of each store a kind of food gives and needs. `set_point` is the law of
+    the gene for the set point, if the reward has drive reduction.
     """
 
     initial: float = setting(0.0, "held by each founder at the start", "amount", OURS, ge=0, le=1e6)
@@ -64,8 +64,8 @@ class StoreConfig:
 class EnergyConfig(StoreConfig):
     """The store `energy`: energy ← clip(energy + food − action_cost·|force| − basic_cost − decay·energy, 0, capacity).
 
-    Births and the hazard read it, obstacles and hunters take it, and it alone has a ledger in the records. It has the
-    same settings as every store (`[store.<kind>]`), with other defaults.
+    Births and the hazard depend on it, obstacles and hunters take it, and only energy has a ledger in the records. It
+    has the same settings as every store (`[store.<kind>]`), with other defaults.
     """
 
     initial: float = setting(

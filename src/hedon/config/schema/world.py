@@ -1,4 +1,4 @@
-"""What holds for all agents of a world, of whatever species."""
+"""Rules common to all agents of a world, of any species."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -8,7 +8,7 @@ from hedon.config.field import EITHER, OURS, PAPER, setting
 
 @dataclass(frozen=True, slots=True)
 class WorldConfig:
-    """Rules that all agents of a world share; no species has its own."""
+    """Rules that all agents of a world share; they cannot be set per species."""
 
     food_radius: float = setting(4.0, "radius of a piece of food", "u", EITHER, gt=0, le=1e3)
     eaten_food: Literal["gone", "seen"] = setting(
