@@ -110,7 +110,7 @@ def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:
 
     Returns:
         (path, value in a, value in b) in order; None stands for a missing setting. If the food kinds or their order
-            differ, an entry with the path "food" lists their names.
+        differ, an entry with the path "food" lists their names.
 
     Raises:
         ArgumentError: An argument is not a config.

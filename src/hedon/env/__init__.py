@@ -1,7 +1,8 @@
-"""Environments for other programs' agents: arrays of many worlds, and the APIs of Gymnasium, PettingZoo, SB3 and JAX.
+"""Environments for training agents with other programs: arrays of many worlds, and the Gymnasium, PettingZoo, SB3 and
+JAX APIs.
 
-`hedon.make` gives the arrays and needs NumPy alone. All else needs optional packages: `pip install "hedon[env]"` for
-Gymnasium and PettingZoo, `"hedon[jax]"` for JAX; Stable-Baselines3 is installed by its own name.
+`hedon.make` provides the arrays and needs only NumPy. The other APIs need optional packages: `pip install "hedon[env]"`
+for Gymnasium and PettingZoo, `"hedon[jax]"` for JAX; Stable-Baselines3 is installed under its own name.
 """
 
 from importlib import import_module
@@ -44,11 +45,11 @@ _PLACES = {
     "SlotVecEnv": ("slot", "stable-baselines3"),
     "SlotVectorEnv": ("slot_vector", "hedon[env]"),
 }
-"""Where a name is, and what brings the packages that it needs."""
+"""Module of each name, and the extra that installs the packages it needs."""
 
 
 def __getattr__(name: str) -> Any:
-    # Imported on first use: the arrays need none of these packages.
+    # Imported on first use, because the arrays need none of these packages.
     if name not in _PLACES:
         raise AttributeError(f"module 'hedon.env' has no attribute {name!r}")
     module, package = _PLACES[name]

@@ -1,4 +1,4 @@
-"""The life of one agent as an environment of Gymnasium."""
+"""The life of one agent as a Gymnasium environment."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -18,25 +18,25 @@ from hedon.error import ArgumentError, EngineError
 from hedon.text import brief
 
 Policy = Callable[[NDArray[np.float32]], NDArray[np.float32]]
-"""From observations (agents, entries) to actions (agents, 2)."""
+"""Maps observations (agents, entries) to actions (agents, 2)."""
 
 
 def one_group(worlds: VectorEnv) -> Group:
-    """The agents of the only driven species. ArgumentError: there are several."""
+    """The agents of the only driven species. Raises ArgumentError if there are several."""
     if len(worlds.groups) > 1:
         raise ArgumentError(f"species: must be one of {', '.join(worlds.groups)}, that of the agent")
     return next(iter(worlds.groups.values()))
 
 
 def require_policy(others: Policy | None) -> Policy | None:
-    """The policy of the others. ArgumentError: it is no function."""
+    """Returns the policy of the other agents. Raises ArgumentError if it is not callable."""
     if others is not None and not callable(others):
         raise ArgumentError(f"others: must be a function from observations to actions, not {brief(repr(others))}")
     return others
 
 
 def first_founder(group: Group, world: int) -> int:
-    """The slot of the first founder of a world that has just begun. EngineError: there is none."""
+    """Slot of the first founder of a new world. Raises EngineError if there is none."""
     founders = np.flatnonzero(group.alive[world])
     if not len(founders):
         raise EngineError("the species has no founders: population.initial_count is 0")
@@ -44,7 +44,9 @@ def first_founder(group: Group, world: int) -> int:
 
 
 def answered(others: Policy, group: Group) -> NDArray[Any]:
-    """What a policy answers for all agents, (worlds, slots, 2). ArgumentError: it is no table of actions."""
+    """A policy's actions for all agents, (worlds, slots, 2). Raises ArgumentError unless they are a table of
+    actions.
+    """
     shape = group.actions.shape
     answer = others(group.observations.reshape(-1, len(group.columns)))
     given = np.asarray(answer)
@@ -62,26 +64,26 @@ def answered(others: Policy, group: Group) -> NDArray[Any]:
 
 
 class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
-    """One agent among others: an episode is its life, from the beginning of a world to its death.
+    """One agent among others: an episode is its life, from the start of a world to its death.
 
-    The agent is the first founder of its species. Other species act by their `learning.policy`. Others of the same
-    species act by `others`, since one species has one policy; give the agent a species of its own with a capacity of 1,
-    and all others act and learn by themselves (docs/guide/environment.md).
+    The agent is the first founder of its species. Other species act according to their `learning.policy`. The other
+    agents of its species act according to `others`, since a species has one policy. To let all others act and learn by
+    themselves, give the agent its own species with a capacity of 1 (docs/guide/environment.md).
 
     Args:
-        config: Settings of the world, as for `hedon.make`, like all that follow but `others`.
-        species: Of the agent: one name; None for the only one whose policy is `external`, or the only one.
-        seed: Of the first world; None for one drawn by chance.
-        actions: What their numbers are.
-        repeat: Steps of the world in one step.
-        max_steps: Steps of the world after which the episode is truncated.
-        others: Acts for the others of the species, from observations (slots, entries) to actions (slots, 2);
-            None to leave their motors in the middle of their range.
-        render_mode: What `render` gives.
-        threads: One world of usual size is fastest on one.
-        record: Folder for the records of its worlds, one run for each that begins; call `close` at the end.
-        frames: Steps of the world between two frames of the records; 0 for none.
-        overrides: Settings that differ from those of the preset or file.
+        config: Settings of the world. This argument and all others except `others` work as in `hedon.make`.
+        species: Name of the agent's species; None for the only one whose policy is `external`, or the only one.
+        seed: Seed of the first world; None for a random one.
+        actions: Meaning of the numbers in an action.
+        repeat: World steps per environment step.
+        max_steps: World steps after which the episode is truncated.
+        others: Policy of the other agents of the species, from observations (slots, entries) to actions (slots, 2);
+            None to keep their motors in the middle of their range.
+        render_mode: What `render` produces.
+        threads: Number of threads; a world of usual size is fastest with one.
+        record: Folder for the records, one run for each world that starts; call `close` at the end.
+        frames: World steps between two recorded frames; 0 for none.
+        overrides: Settings that replace those of the preset or file.
 
     Raises:
         ConfigError: A setting is wrong.
@@ -128,20 +130,20 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
 
     @property
     def simulation(self) -> Any:
-        """The world itself, for reading: `simulation.worlds[0]`."""
+        """The underlying world, for reading only: `simulation.worlds[0]`."""
         return self._vector.simulation
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begins a new world and a new life.
+        """Starts a new world and a new life.
 
         Returns:
-            The observation (entries,), and the id and the slot of the agent.
+            The observation (entries,), and a dictionary with the agent's id and slot.
 
         Raises:
-            ArgumentError: A seed is wrong, or `options` is no dictionary.
-            EngineError: No agent of the species is there when the world begins.
+            ArgumentError: The seed is wrong, or `options` is not a dictionary.
+            EngineError: The new world has no agent of the species.
         """
         options_of(options)
         super().reset(seed=seed)
@@ -153,12 +155,12 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         """Advances the world by `repeat` steps.
 
         Returns:
-            The observation (entries,), zeros after death; what the agent was paid, whether it has died, whether its
-            time is over, and its id and slot.
+            The observation (entries,), zeros after death; the agent's reward; whether it died; whether it reached
+            `max_steps`; and a dictionary with its id and slot.
 
         Raises:
-            ArgumentError: The action is not two numbers that it can be, or `others` answered none; or there was no
-                `reset`.
+            ArgumentError: The action is not two valid numbers, `others` returned invalid actions, or `reset` was not
+                called.
         """
         group, slot = self._group, self._slot
         if slot < 0:
@@ -166,7 +168,7 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         given = np.asarray(action)
         if given.shape != (2,) or given.dtype.kind not in "fiu":
             raise ArgumentError("action: must be two numbers, left and right")
-        # A copy, so that an action that is refused leaves none behind.
+        # Copied so that a refused action leaves no trace.
         actions = group.actions.copy() if self._others is None else answered(self._others, group)
         actions[0, slot] = given
         self._vector.step(actions)
@@ -186,11 +188,11 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self._group = one_group(self._vector)
 
     def render(self) -> Any:
-        """A picture of the world: see `VectorEnv.render`."""
+        """Draws the world: see `VectorEnv.render`."""
         return self._vector.render()
 
     def close(self) -> None:
-        """Ends the records and closes the window, if there are any."""
+        """Finishes the records and closes the window, if there are any."""
         self._vector.close()
 
     def _seen(self) -> NDArray[np.float32]:

@@ -1,4 +1,4 @@
-"""The lives of one agent in each of several worlds as a vector environment of Gymnasium."""
+"""The lives of one agent in each of several worlds, as a Gymnasium vector environment."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -17,30 +17,30 @@ from hedon.error import ArgumentError
 
 
 class AgentVectorEnv(WorldsVectorEnv):
-    """One agent in each of several worlds: `AgentEnv` for as many worlds as there are environments, stepped together.
+    """One agent in each of several worlds: several `AgentEnv`, stepped together.
 
-    `gymnasium.make_vec("hedon/baseline-v0", num_envs=8)` makes it. When an agent dies, or its time is over, its world
-    begins again in the next step, whose action is ignored, with a seed drawn from the first ones.
+    `gymnasium.make_vec("hedon/baseline-v0", num_envs=8)` creates it. After an agent dies or reaches `max_steps`, the
+    next step ignores its action and restarts its world, with a seed drawn from the first ones.
 
     Args:
         config: Settings of the worlds, as for `hedon.make`.
-        num_envs: How many worlds.
-        species: As for `AgentEnv`, like all that follow.
-        seed: Of the first world, whose followers have the next numbers; None for one drawn by chance.
-        actions: What their numbers are.
-        repeat: Steps of the worlds in one step.
-        max_steps: Steps of a world after which the episode is truncated.
-        others: Acts for the others of the species, from observations (worlds · slots, entries) to actions.
-        render_mode: What `render` gives.
+        num_envs: Number of worlds.
+        species: Name of the agents' species. This argument and all that follow work as in `AgentEnv`.
+        seed: Seed of the first world; the others get the following numbers. None for a random one.
+        actions: Meaning of the numbers in an action.
+        repeat: World steps per environment step.
+        max_steps: World steps after which the episode is truncated.
+        others: Policy of the other agents of the species, from observations (worlds · slots, entries) to actions.
+        render_mode: What `render` produces.
         threads: As in `hedon.Simulation`; changes no result.
-        record: Folder for the records of its worlds, one run for each that begins; call `close` at the end.
-        frames: Steps of the world between two frames of the records; 0 for none.
-        overrides: Settings that differ from those of the preset or file.
+        record: Folder for the records, one run for each world that starts; call `close` at the end.
+        frames: World steps between two recorded frames; 0 for none.
+        overrides: Settings that replace those of the preset or file.
 
     Raises:
         ConfigError: A setting is wrong.
         ArgumentError: Another argument is wrong.
-        EngineError: A world begins without an agent of the species.
+        EngineError: A new world has no agent of the species.
     """
 
     def __init__(
@@ -81,17 +81,17 @@ class AgentVectorEnv(WorldsVectorEnv):
     def reset(
         self, *, seed: int | list[int] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Floats, dict[str, Any]]:
-        """Begins all worlds.
+        """Starts all worlds.
 
         Args:
-            seed: Of the first world, whose followers have the next numbers; or one for each world.
-            options: None are known.
+            seed: Seed of the first world, with the following numbers for the others; or one seed per world.
+            options: Must be empty; no option is known.
 
         Returns:
-            The observations (worlds, entries), and the agents' ids.
+            The observations (worlds, entries), and a dictionary with the agents' ids.
 
         Raises:
-            ArgumentError: A seed is wrong, or `options` is no dictionary.
+            ArgumentError: A seed is wrong, or `options` is not a dictionary.
         """
         options_of(options)
         self.worlds.reset(seed)
@@ -108,11 +108,12 @@ class AgentVectorEnv(WorldsVectorEnv):
             actions: (worlds, 2), left and right motor of each agent.
 
         Returns:
-            Observations (worlds, entries), rewards (worlds,), deaths (worlds,), lives that time ended (worlds,), infos.
+            Observations (worlds, entries), rewards (worlds,), deaths (worlds,), lives cut off at `max_steps` (worlds,),
+            infos.
 
         Raises:
-            ArgumentError: An action is not two numbers that it can be, or `others` answered none; or there was no
-                `reset`.
+            ArgumentError: An action is not two valid numbers, `others` returned invalid actions, or `reset` was not
+                called.
         """
         if self._slots[0] < 0:
             raise ArgumentError("step: there are no agents: call reset first")

@@ -1,4 +1,4 @@
-"""Checks what environments are made with."""
+"""Checks the arguments of environments."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -17,17 +17,17 @@ from hedon.experiment.simulation import MAX_WORLD_SEED, Simulation
 from hedon.text import brief
 
 _DRAWN = 2**32
-"""Seeds that are drawn by chance are below."""
+"""Random seeds are below this number."""
 RESET_MASK = "reset_mask"
-"""The option of `reset` that Gymnasium's vector environments have too."""
+"""Option of `reset` that Gymnasium's vector environments share."""
 
 
 def loaded(config: Config | str | Path, overrides: Iterable[str]) -> Config:
-    """The config itself, or that of a preset or a file with other settings.
+    """Returns a config as it is, or loads a preset or file with overrides.
 
     Raises:
         ConfigError: A setting is wrong.
-        ArgumentError: There are overrides of a config that is loaded already.
+        ArgumentError: Overrides were given for a loaded config.
     """
     if isinstance(config, str | Path):
         return load_config(config, overrides=overrides)
@@ -37,7 +37,7 @@ def loaded(config: Config | str | Path, overrides: Iterable[str]) -> Config:
 
 
 def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ...]:
-    """The names of the species that the caller drives.
+    """Names of the species that the caller drives.
 
     Raises:
         ArgumentError: There is no such species.
@@ -71,10 +71,10 @@ def with_callers(config: Config, names: Sequence[str]) -> Config:
 
 
 def options_of(options: Any) -> dict[str, Any]:
-    """What a caller gave to `reset` besides the seed.
+    """Options given to `reset`, as a dictionary.
 
     Raises:
-        ArgumentError: It is something else.
+        ArgumentError: They are neither a dictionary nor None.
     """
     if not isinstance(options, Mapping | None):
         raise ArgumentError(f"options = {brief(repr(options))}: must be a dict, or None")
@@ -82,10 +82,10 @@ def options_of(options: Any) -> dict[str, Any]:
 
 
 def world_seeds(seed: Any, worlds: int) -> tuple[int, ...]:
-    """The seed of each world.
+    """Seed of each world.
 
     Raises:
-        ArgumentError: It is neither.
+        ArgumentError: It is neither a seed nor one valid seed per world.
     """
     if isinstance(seed, Iterable) and not isinstance(seed, str | bytes):
         seeds = seed_list(seed, MAX_WORLD_SEED)
@@ -99,10 +99,10 @@ def world_seeds(seed: Any, worlds: int) -> tuple[int, ...]:
 
 
 def chosen(name: str, value: Any, known: Sequence[Any], *, empty: bool = False) -> Any:
-    """A value that is one of a few.
+    """Returns a value if it is one of the known ones.
 
     Raises:
-        ArgumentError: It is none of them.
+        ArgumentError: The value is not known.
     """
     if (empty and value is None) or (isinstance(value, str) and value in known):
         return value
@@ -112,10 +112,10 @@ def chosen(name: str, value: Any, known: Sequence[Any], *, empty: bool = False) 
 
 
 def reset_mask(options: Any, worlds: int) -> NDArray[np.bool_]:
-    """The worlds that begin again, (worlds,).
+    """Mask of the worlds to restart, (worlds,).
 
     Raises:
-        ArgumentError: There is no such option, or it is no such mask.
+        ArgumentError: An option is unknown, or the mask is invalid.
     """
     given = options_of(options)
     mask = np.asarray(given.pop(RESET_MASK, np.ones(worlds, np.bool_)))
@@ -130,7 +130,7 @@ def reset_mask(options: Any, worlds: int) -> NDArray[np.bool_]:
 def recordable(
     config: Config, seeds: Sequence[int], threads: int, backend: str, record: Path | str | None, frames: int
 ) -> Simulation:
-    """The worlds of an environment; if they are recorded, their config is pinned to its rules.
+    """Creates an environment's worlds; if they are recorded, their config is pinned to its rules.
 
     Raises:
         ArgumentError: `frames` is given without `record`.

@@ -1,4 +1,4 @@
-"""The agents of one species that a caller drives, as arrays, and what becomes of them in a call of `VectorEnv.step`."""
+"""The agents of one driven species as arrays, with what happens to them in a call of `VectorEnv.step`."""
 
 from collections.abc import Mapping
 from typing import Any, Literal
@@ -13,16 +13,16 @@ from hedon.text import brief
 ACTIONS = ("left", "right")
 """The two motors, in the order of the columns of `actions`."""
 NOBODY = -1
-"""In arrays of ids, where no agent lives."""
+"""In arrays of ids, marks a slot without a living agent."""
 NEWBORN = np.dtype([("world", "i4"), ("slot", "i4"), ("agent_id", "i4"), ("reward", "f4"), ("alive", "?")])
-"""A row of `Group.newborns`."""
+"""Row of `Group.newborns`."""
 Form = Literal["unit", "force", "logit"]
-"""What the numbers of actions are; see `hedon.make`."""
+"""Meaning of the numbers in an action; see `hedon.make`."""
 FORMS: tuple[Form, ...] = ("unit", "force", "logit")
 
 
 class Held:
-    """An array that a group allocates once: its caller writes into it, and cannot put another in its place."""
+    """An array that a group allocates once: callers can write into it but not replace it."""
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
@@ -32,7 +32,7 @@ class Held:
 
     def __set__(self, group: Any, value: Any) -> None:
         held = group.__dict__.setdefault(self._name, value)
-        if value is not held:  # `group.actions += 1` sets the same one
+        if value is not held:  # `group.actions += 1` assigns the same array
             raise ArgumentError(
                 f"{self._name}: must be the array of {held.shape} {held.dtype} that was there: write into it, "
                 f"{self._name}[...] = …"
@@ -40,42 +40,42 @@ class Held:
 
 
 class Group:
-    """The agents of one species in all worlds: a row for each slot, in which agents live one after another.
+    """The agents of one species in all worlds, with a row for each slot, in which agents live one after another.
 
-    Each array is allocated once, and always has what is now, or what was in the steps of the last call of
-    `VectorEnv.step`, one or `repeat`. `observations.reshape(-1, entries)` is all agents as one table, without a copy.
+    Each array is allocated once. It always holds the current state, or what happened in the one or `repeat` steps of
+    the last call of `VectorEnv.step`. `observations.reshape(-1, entries)` gives all agents as one table, without a
+    copy.
 
     Args:
-        index: Of the species in the config's order.
+        index: Index of the species in the config.
         columns: Names of the entries of an observation.
-        meal_names: What can be eaten.
+        meal_names: Names of what can be eaten.
         motor: Settings of the motors.
-        form: What the numbers of actions are.
-        worlds: How many there are.
-        slots: Of the species in each world.
+        form: Meaning of the numbers in an action.
+        worlds: Number of worlds.
+        slots: Number of slots of the species in each world.
 
     Attributes:
         columns: Names of the entries of an observation.
-        meal_names: What can be eaten: the kinds of food, then, where agents eat agents, the species.
-        low: The least that an action can be.
-        high: The greatest.
-        open: Whether any number can be one.
-        actions: (worlds, slots, 2) float32: left and right motor. A newborn has the middle of the motors' range until
-            told otherwise; rows without an agent are not read.
-        observations: (worlds, slots, entries) float32, as a network of the engine reads them; zeros where nobody
-            lives.
-        rewards: (worlds, slots) float32, what the agent that was in the slot before the steps was paid in them, by its
-            own genome, up to its death; 0 where there was none. What others earned who came into the slot after it
-            is in `newborns`.
+        meal_names: Names of what can be eaten: the kinds of food and, if agents eat agents, the species.
+        low: Lower bound of an action.
+        high: Upper bound of an action.
+        open: Whether any number is a valid action.
+        actions: (worlds, slots, 2) float32: left and right motor. A newborn's action is the middle of the motors' range
+            until it is set; rows without an agent are not read.
+        observations: (worlds, slots, entries) float32, as the engine's networks read them; zeros in empty slots.
+        rewards: (worlds, slots) float32, rewards in the steps, up to its death, of the agent that was in the slot
+            before them, by its own genome; 0 if there was none. Rewards of agents born in the slot during the steps are
+            in `newborns`.
         terminated: (worlds, slots) bool, whether the agent that was there before the steps died in them.
-        truncated: (worlds, slots) bool, whether the agent that lives there now has come to the end of its time.
-        ids: (worlds, slots) int32, the agent in each slot; -1 where nobody lives. No id is used again in a world.
-        ids_before: the same before the steps.
+        truncated: (worlds, slots) bool, whether the agent that lives there now has reached `max_steps`.
+        ids: (worlds, slots) int32, id of the agent in each slot; -1 in empty slots. A world never reuses an id.
+        ids_before: (worlds, slots) int32, the same before the steps.
         alive: (worlds, slots) bool, whether an agent lives there now.
         born: (worlds, slots) bool, whether the agent that lives there now was born in the steps.
-        births: (worlds,) int64, how many were born in the steps.
-        deaths: (worlds,) int64, how many died in the steps, with those who were born in them.
-        meals: (worlds, meals) int64, what the agents of the species ate in the steps, in the order of `meal_names`.
+        births: (worlds,) int64, number of births in the steps.
+        deaths: (worlds,) int64, number of deaths in the steps, including agents born in them.
+        meals: (worlds, meals) int64, what the species' agents ate in the steps, in the order of `meal_names`.
     """
 
     def __repr__(self) -> str:
@@ -120,28 +120,28 @@ class Group:
         self.births, self.deaths = np.zeros(worlds, np.int64), np.zeros(worlds, np.int64)
         self.meals = np.zeros((worlds, len(meal_names)), np.int64)
         self._index, self._form = index, form
-        # None of these is ever replaced: looked up once, since steps of few agents are short.
+        # These are never replaced, so look them up once: steps of few agents are short.
         every = [(name, getattr(self, name)) for name, held in vars(Group).items() if isinstance(held, Held)]
         self._shared = {name: (array, array.shape, array.dtype) for name, array in every}
         self._derived = (self.ids, self.ids_before, self.alive, self.born, self.terminated)
         self._eaten = self.meals.copy()
-        # Within a repeat: rewards of who was born in it, by slot, and rows of those who were born and died in it.
+        # Within a repeat: rewards of agents born in it, by slot, and rows of agents born and dead in it.
         self._late = np.zeros_like(self.rewards)
         self._gone = np.zeros(0, NEWBORN)
 
     @property
     def newborns(self) -> NDArray[Any]:
-        """(births,) all who were born in the steps, in the order of world and id: a structured array (`NEWBORN`).
+        """(births,) all agents born in the steps, ordered by world and id: a structured array (`NEWBORN`).
 
-        `reward` is what it was paid in the steps, 0 in the step of its birth; `alive`, whether it lives now. A
-        newborn that is not alive has come and gone within a repeat: no other array shows it.
+        `reward` is the newborn's reward in the steps, 0 in the step of its birth; `alive`, whether it is alive now. A
+        newborn that is not alive was born and died within a repeat; no other array shows it.
         """
         here = np.nonzero(self.born)
         rows = np.concatenate([self._gone, _rows(here, self.ids, self._late, alive=True)])
         return rows[np.lexsort((rows["agent_id"], rows["world"]))]
 
     def _take(self, given: Any) -> None:
-        """Copies actions into the array that is there, unless they are that array."""
+        """Copies actions into the group's array, unless they are that array."""
         if given is self.actions:
             return
         array = np.asarray(given)
@@ -157,14 +157,14 @@ class Group:
             self.actions[...] = array.reshape(self.actions.shape)
 
     def _check(self) -> None:
-        """ArgumentError: an array is not as it was made."""
+        """Raises ArgumentError if an array is not as it was allocated."""
         for name, (array, shape, kind) in self._shared.items():
             flags = array.flags
             if not (flags.c_contiguous and flags.writeable and array.shape == shape and array.dtype is kind):
                 raise ArgumentError(f"{name}: must be as it was made, writeable, contiguous, {kind} of shape {shape}")
 
     def _tell(self, give: Any) -> None:
-        """Gives the actions to a method of the engine, which refuses wrong ones. ArgumentError: it did."""
+        """Passes the actions to a method of the engine. Raises ArgumentError if it refuses one."""
         bad = give(self._index, self.actions, self._form)
         if bad >= 0:
             world, slot, motor = (int(i) for i in np.unravel_index(bad, self.actions.shape))
@@ -173,18 +173,18 @@ class Group:
             raise ArgumentError(f"{place}: must be {rule}")
 
     def _begin(self) -> None:
-        """What follows is counted from here."""
+        """Starts a new count of births, deaths and rewards."""
         np.copyto(self.ids_before, self.ids)
         self._late.fill(0)
         self._gone = self._gone[:0]
 
     def _look(self, engine: Any) -> None:
-        """Reads what there is after the only step since `_begin`."""
+        """Reads the state after the only step since `_begin`."""
         changed = engine.read_observations(self._index, self.observations, self.rewards, self.ids)
         self._finish(engine, changed=changed > 0)
 
     def _count(self, engine: Any, *, first: bool, last: bool) -> None:
-        """Reads what there is after one of several steps since `_begin`."""
+        """Reads the state after one of several steps since `_begin`."""
         if first:
             self.rewards.fill(0)
         acting, paid = self.ids.copy(), np.zeros_like(self.rewards)
@@ -204,7 +204,7 @@ class Group:
             self.observations[self.terminated & ~self.alive] = 0
 
     def _finish(self, engine: Any, *, changed: bool) -> None:
-        """What is derived from the ids of now and of before the steps, of which some differ if `changed`."""
+        """Derives arrays from the ids now and before the steps; some of them differ if `changed`."""
         ids, before, alive, born, terminated = self._derived
         np.not_equal(ids, NOBODY, out=alive)
         if changed:
@@ -214,7 +214,7 @@ class Group:
             born.sum(axis=1, out=self.births)
             terminated.sum(axis=1, out=self.deaths)
             self.actions[born] = self._middle
-        else:  # nobody came or went, as in most steps of few worlds
+        else:  # no births or deaths, as in most steps of few worlds
             born.fill(False)
             terminated.fill(False)
             self.births.fill(0)
@@ -228,7 +228,7 @@ class Group:
         self._eaten[...] = eaten
 
     def _forget(self, worlds: NDArray[np.bool_]) -> None:
-        """Begins anew in some worlds, (worlds,)."""
+        """Clears the arrays in some worlds, (worlds,)."""
         self.actions[worlds] = self._middle
         for array in (self.observations, self.rewards, self._late, self.births, self.deaths, self.meals):
             array[worlds] = 0
@@ -238,7 +238,7 @@ class Group:
         self.ids[worlds] = NOBODY
 
     def _open(self, engine: Any, worlds: NDArray[np.bool_]) -> None:
-        """Reads worlds, (worlds,), that have just begun; of the others nothing changes."""
+        """Reads worlds, (worlds,), that have just started; the others stay unchanged."""
         self._check()
         self._forget(worlds)
         engine.read_observations(self._index, self.observations, np.empty_like(self.rewards), self.ids)
@@ -247,11 +247,11 @@ class Group:
         self._eaten[worlds] = engine.meals(self._index)[worlds]
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
-        """All arrays, by name: what `VectorEnv.save` keeps."""
+        """All arrays by name, as stored by `VectorEnv.save`."""
         return {name: array for name, array in vars(self).items() if isinstance(array, np.ndarray)}
 
     def _set(self, arrays: dict[str, NDArray[Any]]) -> None:
-        """Takes over arrays that fit: what `VectorEnv.restore` found."""
+        """Copies arrays from `VectorEnv.restore`; their shapes fit."""
         for name, array in arrays.items():
             if name == "_gone":
                 self._gone = array
@@ -260,10 +260,10 @@ class Group:
 
 
 def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
-    """Gives actions to the agents, or refuses those of all species: arrays and worlds then are as they were.
+    """Sets the actions of all species; if one is refused, arrays and worlds are as before.
 
     Raises:
-        ArgumentError: One is not what it can be.
+        ArgumentError: An action is invalid.
     """
     given = _by_species(groups, actions)
     for group in groups.values():
@@ -272,7 +272,7 @@ def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
     try:
         for group, array in given:
             group._take(array)
-        if len(groups) > 1:  # nobody may be told anything before all are right
+        if len(groups) > 1:  # set nothing before the actions of all species are valid
             for group in groups.values():
                 group._tell(engine.wrong_action)
         for group in groups.values():
@@ -295,7 +295,7 @@ def _by_species(groups: Mapping[str, Group], actions: Any) -> list[tuple[Group, 
 
 
 def _bounds(motor: MotorConfig, form: Form) -> tuple[float, float]:
-    """The least and the greatest that an action can be."""
+    """Lower and upper bound of an action."""
     if form == "unit":
         return -1.0, 1.0
     largest = float(np.finfo(np.float32).max)

@@ -1,7 +1,7 @@
-"""Worlds inside programs of JAX: steps in `jit`, `lax.scan` and `vmap`, on the processor, without Python between them.
+"""Worlds inside JAX programs: steps in `jit`, `lax.scan` and `vmap`, on the CPU, without Python between them.
 
-The worlds themselves stay in the engine. What JAX carries is a handle: which world, and its turn, which every step
-raises. So steps happen in their order, and a state that a later step has used is refused.
+The worlds themselves stay in the engine. JAX carries a handle: the world's index and its turn, which each step
+increments. Steps therefore run in order, and a state that a later step has used is refused.
 """
 
 import ctypes
@@ -36,12 +36,12 @@ SOURCE = Path(__file__).with_name("xla.cpp")
 
 
 class State(NamedTuple):
-    """A handle of a world, for `JaxEnv.step`.
+    """Handle of a world, for `JaxEnv.step`.
 
     Attributes:
-        world: () int32, its index.
-        turn: () uint32, which step it is of: each state can be gone on from once.
-        agent_id: (slots,) int32, who lives in each slot; -1 where nobody does.
+        world: () int32, index of the world.
+        turn: () uint32, number of the step that produced it; each state can be stepped from only once.
+        agent_id: (slots,) int32, id of the agent in each slot; -1 in empty slots.
     """
 
     world: jax.Array
@@ -50,46 +50,45 @@ class State(NamedTuple):
 
 
 class JaxParams(NamedTuple):
-    """What can differ between the worlds of a program, for `JaxEnv.reset` and `JaxEnv.step`.
+    """Parameters that can differ between the worlds of a program, for `JaxEnv.reset` and `JaxEnv.step`.
 
     Attributes:
-        max_steps: () int32, steps of a world after which it begins again; 0 for no end.
+        max_steps: () int32, steps after which a world restarts; 0 for no limit.
     """
 
     max_steps: jax.Array | int
 
 
 class JaxEnv(Copied):
-    """Worlds that a program of JAX drives, with functions of one world as gymnax has them.
+    """Worlds that a JAX program drives, through functions of one world as in gymnax.
 
-    With several worlds, call the functions by `jax.vmap` over all of them: with a key for each, or with one key for a
-    population of policies, whose worlds then all begin alike. A copy has worlds of its own, which go on from the same
-    state. A world begins again by itself, with a seed from the key of the step, when no driven agent is left, or at
-    `max_steps`.
+    To run several worlds, map the functions over all of them with `jax.vmap`: pass a key for each world, or one key for
+    a population of policies, whose worlds then all start alike. A copy has its own worlds, which continue from the same
+    state. A world restarts by itself, with a seed from the step's key, when no driven agent is left or at `max_steps`.
 
     Args:
-        config: Settings of the worlds, as for `hedon.make`, like all that follow.
-        worlds: How many.
-        species: Whose agents the program drives: one name; None for the only one, or the only external one.
-        actions: What their numbers are.
-        repeat: Steps of the worlds in one step.
-        max_steps: Of `default_params`: steps of a world after which it begins again; 0 for no end.
+        config: Settings of the worlds. This argument and all that follow work as in `hedon.make`.
+        worlds: Number of worlds.
+        species: Name of the species that the program drives; None for the only one, or the only external one.
+        actions: Meaning of the numbers in an action.
+        repeat: World steps per environment step.
+        max_steps: Value in `default_params`: steps after which a world restarts; 0 for no limit.
         threads: As in `hedon.Simulation`; changes no result.
         backend: As in `hedon.Simulation`.
-        record: Folder for the records, one run for worlds that begin together; call `close` at the end.
-        frames: Steps of the worlds between two frames of the records; 0 for none.
+        record: Folder for the records, one run for worlds that start together; call `close` at the end.
+        frames: World steps between two recorded frames; 0 for none.
         overrides: As for `hedon.make`.
 
     Attributes:
         columns: Names of the entries of an observation.
-        slots: Of the species in a world: how many agents can live at once.
-        default_params: What `reset` and `step` use where they get no `params`.
-        simulation: The worlds themselves, to be read while no program runs.
+        slots: Number of slots of the species in a world: how many agents can live at once.
+        default_params: Parameters of `reset` and `step` if they get no `params`.
+        simulation: The underlying worlds, to be read while no program runs.
 
     Raises:
         ConfigError: A setting is wrong.
         ArgumentError: Another argument is wrong.
-        HedonError: There is no C++ compiler, which the first use needs.
+        HedonError: The first use needs a C++ compiler, and there is none.
 
     Example:
         >>> import jax
@@ -125,7 +124,7 @@ class JaxEnv(Copied):
         self.simulation._driven = True
         self._watch: Any = None
         if record is not None:
-            from hedon.env.watch import watch_of  # loads what writes tables
+            from hedon.env.watch import watch_of  # imported late: it loads the table writers
 
             self._watch = watch_of(self.simulation, record, frames)
         self._species = list(config.species).index(names[0])
@@ -136,10 +135,10 @@ class JaxEnv(Copied):
         _register()
 
     def close(self) -> None:
-        """Ends the records, if there are any.
+        """Finishes the records, if there are any.
 
         Raises:
-            RecordError: They cannot be written.
+            RecordError: The records cannot be written.
         """
         if self._watch is not None:
             self._watch.close()
@@ -167,22 +166,22 @@ class JaxEnv(Copied):
         return Spaces(config, {self._name: group})
 
     def observation_space(self, params: JaxParams | None = None) -> Any:
-        """What all slots of one world observe: a `gymnasium.spaces.Box`, (slots, entries) float32."""
+        """Space of the observations of all slots of a world: a `gymnasium.spaces.Box`, (slots, entries) float32."""
         return self._spaces.box_of(self._name, (self.slots,))
 
     def action_space(self, params: JaxParams | None = None) -> Any:
-        """What all slots of one world do: a `gymnasium.spaces.Box`, (slots, 2) float32."""
+        """Space of the actions of all slots of a world: a `gymnasium.spaces.Box`, (slots, 2) float32."""
         return self._spaces.action_box(self._name, (self.slots,))
 
     def reset(self, key: jax.Array, params: JaxParams | None = None) -> tuple[jax.Array, State]:
-        """Begins a world; outside `jax.vmap`, with several worlds, all of them by one seed.
+        """Starts a world; without `jax.vmap`, all worlds start from one seed.
 
         Args:
-            key: From which the seed is taken.
+            key: Key from which the seed is drawn.
             params: None for `default_params`.
 
         Returns:
-            The observations (slots, entries) float32, zeros where nobody lives, and the state.
+            The observations (slots, entries) float32, zeros in empty slots, and the state.
         """
         nobody = jnp.full((self.slots,), NOBODY, jnp.int32)
         before = State(jnp.int32(0), jnp.uint32(0), nobody)
@@ -196,17 +195,17 @@ class JaxEnv(Copied):
         """Advances a world by `repeat` steps.
 
         Args:
-            key: From which the seed is taken where the world begins again.
-            state: The last one.
+            key: Key from which the seed is drawn if the world restarts.
+            state: State from the last `reset` or `step`.
             action: (slots, 2) float32, left and right motor; rows without an agent are not read.
             params: None for `default_params`.
 
         Returns:
-            The observations (slots, entries) float32; the next state; rewards (slots,) float32 of who was there before;
-            whether the world was over and has begun again, () bool; and a dictionary: `terminated` (slots,) bool, who
-            of them died, and `alive` (slots,) bool, where an agent lives now.
+            The observations (slots, entries) float32; the next state; the rewards (slots,) float32 of the agents that
+            were there before; whether the world was over and has restarted, () bool; and a dictionary: `terminated`
+            (slots,) bool, which of these agents died, and `alive` (slots,) bool, which slots have an agent now.
 
-            When the program runs, an error of JAX says what is wrong with an action, or that the state is stale.
+            An invalid action or a stale state raises a JAX error when the program runs.
         """
         state, (seen, paid, died, done) = self._call(key, state, jnp.asarray(action, jnp.float32), params, begins=False)
         return seen, state, paid, done, {"terminated": died, "alive": state.agent_id != NOBODY}
@@ -245,13 +244,13 @@ class JaxEnv(Copied):
 
 @cache
 def _register() -> None:
-    """Makes the call known to JAX."""
+    """Registers the call with JAX."""
     library = ctypes.CDLL(str(_library()))
     jax.ffi.register_ffi_target(TARGET, jax.ffi.pycapsule(library.hedon_step), platform="cpu")
 
 
 def _library() -> Path:
-    """The compiled call, made on first use and kept in the user's cache."""
+    """Path of the compiled call, which the first use builds in the user's cache."""
     said = f"{SOURCE.read_text()} {version('jaxlib')}"
     digest = hashlib.sha256(said.encode()).hexdigest()[:16]
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "hedon"

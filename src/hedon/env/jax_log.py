@@ -1,4 +1,4 @@
-"""Episodes of agents in a program of JAX: what each life was paid and how long it took."""
+"""Episodes of agents in a JAX program: the total reward and the length of each life."""
 
 from typing import Any, NamedTuple
 
@@ -10,12 +10,12 @@ from hedon.env.jax import JaxEnv, JaxParams, State
 
 
 class LogState(NamedTuple):
-    """A state of `JaxEnv` with what its agents have been paid so far.
+    """A state of `JaxEnv` with the rewards of its agents so far.
 
     Attributes:
-        env_state: Of the environment.
-        paid: (slots,) float32, what the agent in each slot has been paid since it was there.
-        lived: (slots,) int32, for how many steps of the environment.
+        env_state: State of the environment.
+        paid: (slots,) float32, total reward so far of the agent in each slot.
+        lived: (slots,) int32, environment steps that it has lived so far.
     """
 
     env_state: State
@@ -24,14 +24,14 @@ class LogState(NamedTuple):
 
 
 class JaxLog:
-    """`JaxEnv` with episodes in its infos, as PureJaxRL's wrapper has them; an episode is a life in a slot.
+    """`JaxEnv` with episodes in its infos, like PureJaxRL's wrapper; an episode is a life in a slot.
 
-    `info` gets `returned_episode` (slots,) bool, where a life has ended, by death or since its world has begun again;
-    and for these lives `returned_episode_returns` (slots,) float32, what each was paid, and `returned_episode_lengths`
-    (slots,) int32, how many steps of the environment it took. All else is as the environment has it.
+    `info` gets `returned_episode` (slots,) bool, whether a life has ended, by death or because its world has restarted;
+    and for these lives `returned_episode_returns` (slots,) float32, their total rewards, and `returned_episode_lengths`
+    (slots,) int32, their lengths in environment steps. Everything else is as in the environment.
 
     Args:
-        env: The environment.
+        env: The environment to wrap.
 
     Example:
         >>> import jax
@@ -44,12 +44,12 @@ class JaxLog:
         self.env = env
 
     def __getattr__(self, name: str) -> Any:
-        if name == "env":  # of a copy that is being made
+        if name == "env":  # while a copy is being made
             raise AttributeError(name)
         return getattr(self.env, name)
 
     def reset(self, key: jax.Array, params: JaxParams | None = None) -> tuple[jax.Array, LogState]:
-        """As `JaxEnv.reset`, with nothing paid so far."""
+        """As `JaxEnv.reset`, with total rewards and lengths set to 0."""
         seen, state = self.env.reset(key, params)
         slots = state.agent_id.shape
         return seen, LogState(state, jnp.zeros(slots, jnp.float32), jnp.zeros(slots, jnp.int32))
@@ -57,7 +57,7 @@ class JaxLog:
     def step(
         self, key: jax.Array, state: LogState, action: jax.Array, params: JaxParams | None = None
     ) -> tuple[jax.Array, LogState, jax.Array, jax.Array, dict[str, jax.Array]]:
-        """As `JaxEnv.step`, with the lives that have ended in its infos."""
+        """As `JaxEnv.step`, with ended lives in its infos."""
         seen, after, paid, done, info = self.env.step(key, state.env_state, action, params)
         there = state.env_state.agent_id != NOBODY
         total, length = state.paid + paid, state.lived + there

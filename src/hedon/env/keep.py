@@ -1,4 +1,4 @@
-"""Arrays in a string of bytes, with what they belong to: what `VectorEnv.save` adds to the worlds."""
+"""Serializes arrays with a description of their origin, for `VectorEnv.save` to add to the worlds."""
 
 import json
 from typing import Any
@@ -10,15 +10,15 @@ from hedon.error import ArgumentError
 
 Arrays = dict[tuple[str, str], NDArray[Any]]
 FREE = "_gone"
-"""The only array whose length may be another one."""
+"""The only array whose length may differ."""
 
 
 def text_of(about: dict[str, Any], arrays: Arrays) -> bytes:
-    """Writes arrays.
+    """Serializes arrays.
 
     Args:
-        about: What they belong to.
-        arrays: Of any shapes, by two names.
+        about: Description of the environment that they belong to.
+        arrays: Arrays of any shapes, by two names.
     """
     rows = [[*names, len(array)] for names, array in arrays.items()]
     head = json.dumps({"about": about, "rows": rows}).encode()
@@ -26,18 +26,18 @@ def text_of(about: dict[str, Any], arrays: Arrays) -> bytes:
 
 
 def arrays_in(text: bytes, about: dict[str, Any], like: Arrays) -> Arrays:
-    """Reads arrays.
+    """Reads serialized arrays.
 
     Args:
-        text: What `text_of` gave.
-        about: What they must belong to.
-        like: Arrays of the types and shapes that they must have.
+        text: Bytes from `text_of`.
+        about: Description that they must match.
+        like: Arrays whose types and shapes they must have.
 
     Returns:
         Arrays by name, of the shapes of `like`.
 
     Raises:
-        ArgumentError: It is something else.
+        ArgumentError: The bytes are anything else.
     """
     head, _, rest = text.partition(b"\n")
     try:
@@ -49,7 +49,7 @@ def arrays_in(text: bytes, about: dict[str, Any], like: Arrays) -> Arrays:
     found: Arrays = {}
     at = 0
     for (first, second, rows), (names, array) in zip(told["rows"], like.items(), strict=True):
-        if second == "steps" and rows != len(array):  # the first of all: a number for each world
+        if second == "steps" and rows != len(array):  # the first array: a number per world
             raise ArgumentError(f"saved: there are {rows} worlds, here {len(array)}")
         shape = (rows, *array.shape[1:])
         count = rows * int(np.prod(array.shape[1:], dtype=np.int64))

@@ -1,4 +1,4 @@
-"""One world as an environment of PettingZoo's Parallel API, whose agents appear and vanish, or are its slots."""
+"""One world under PettingZoo's Parallel API, in which agents appear and disappear, or slots stand for agents."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -24,29 +24,29 @@ Values = dict[str, NDArray[np.float32]]
 class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
     """A world whose agents the caller drives. An agent's name is its species and its id: `agent_17`.
 
-    A newborn comes into `agents` with its first observation and a reward of 0. An agent that dies
-    appears once more, in `terminations`, with its last reward and an observation of zeros, and is gone. Agents of
-    species that are not driven live in the same world by themselves and are not shown. There is no list of possible
-    agents: nobody knows who will be born.
+    A newborn enters `agents` with its first observation and a reward of 0. An agent that dies appears once more, in
+    `terminations`, with its last reward and an observation of zeros, and is then removed. Agents of species that are
+    not driven live in the same world by themselves and are not shown. There is no list of possible agents, because
+    births cannot be foreseen.
 
-    Libraries that want such a list, as SuperSuit does, get slots for agents: `agent_slot_3` stands for all who live in
-    a slot, is there from the beginning to the end, and observes zeros and earns 0 while it is empty. Its info says
-    whether someone lives there now (`alive`), and whether someone has died (`died`) or was born (`born`) there in the
-    step. All terminate when nobody is left.
+    Libraries that require such a list, such as SuperSuit, can use slots as agents: `agent_slot_3` stands for all agents
+    that live in a slot, exists from start to end, and observes zeros and earns 0 while the slot is empty. Its info
+    tells whether an agent lives there now (`alive`), and whether one died (`died`) or was born (`born`) there in the
+    step. All slots terminate when no agent is left.
 
     Args:
-        config: Settings of the world, as for `hedon.make`, like all that follow but `slots`.
-        species: Whose agents the caller drives.
-        seed: Of the first world; None for one drawn by chance.
-        actions: What their numbers are.
-        repeat: Steps of the world in one step.
-        max_steps: Steps after which all agents are truncated; 0 for no end but extinction.
-        slots: Whether slots are the agents.
-        render_mode: What `render` gives.
-        threads: One world of usual size is fastest on one.
-        record: Folder for the records of its worlds, one run for each that begins; call `close` at the end.
-        frames: Steps of the world between two frames of the records; 0 for none.
-        overrides: Settings that differ from those of the preset or file.
+        config: Settings of the world. This argument and all others except `slots` work as in `hedon.make`.
+        species: Species whose agents the caller drives.
+        seed: Seed of the first world; None for a random one.
+        actions: Meaning of the numbers in an action.
+        repeat: World steps per environment step.
+        max_steps: Steps after which all agents are truncated; 0 for no limit except extinction.
+        slots: Whether slots stand for agents.
+        render_mode: What `render` produces.
+        threads: Number of threads; a world of usual size is fastest with one.
+        record: Folder for the records, one run for each world that starts; call `close` at the end.
+        frames: World steps between two recorded frames; 0 for none.
+        overrides: Settings that replace those of the preset or file.
 
     Raises:
         ConfigError: A setting is wrong.
@@ -98,27 +98,27 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
 
     @property
     def simulation(self) -> Any:
-        """The world itself, for reading: `simulation.worlds[0]`."""
+        """The underlying world, for reading only: `simulation.worlds[0]`."""
         return self._vector.simulation
 
     def observation_space(self, agent: str) -> Box:
-        """What an agent can observe, an entry for each column that `Group.columns` names; the same object each time."""
+        """Space of an agent's observations, with an entry per column in `Group.columns`; the same object each time."""
         return self._spaces_of(agent)[0]
 
     def action_space(self, agent: str) -> Box:
-        """What an agent can do: two numbers, left and right; the same object each time."""
+        """Space of an agent's actions: two numbers, left and right; the same object each time."""
         return self._spaces_of(agent)[1]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Values, dict[str, dict[str, Any]]]:
-        """Begins again.
+        """Starts a new world.
 
         Returns:
-            By the names of the founders: observations (entries,), and infos.
+            Observations (entries,) and infos, by the names of the founders.
 
         Raises:
-            ArgumentError: A seed is wrong, or `options` is no dictionary.
+            ArgumentError: The seed is wrong, or `options` is not a dictionary.
         """
         options_of(options)
         self._vector.reset(None if seed is None else [seed])
@@ -130,15 +130,15 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
     def step(
         self, actions: Mapping[str, NDArray[np.float32]]
     ) -> tuple[Values, dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
-        """Advances by one step.
+        """Advances the world by `repeat` steps.
 
         Returns:
-            By the names of all who lived before the step or live after it: observations (entries,), rewards,
-            terminations, truncations, infos.
+            Observations (entries,), rewards, terminations, truncations and infos, by the names of all agents alive
+            before or after the step.
 
         Raises:
-            ArgumentError: An action is for nobody alive, or is not two numbers that it can be, and then none is told;
-                or there was no `reset`.
+            ArgumentError: An action is for no living agent or is not two valid numbers, in which case no action is set;
+                or `reset` was not called.
         """
         if not self._begun:
             raise ArgumentError("step: there are no agents yet: call reset first")
@@ -171,11 +171,11 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         return result
 
     def render(self) -> Any:
-        """A picture of the world: see `VectorEnv.render`."""
+        """Draws the world: see `VectorEnv.render`."""
         return self._vector.render()
 
     def close(self) -> None:
-        """Ends the records and closes the window, if there are any."""
+        """Finishes the records and closes the window, if there are any."""
         self._vector.close()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -190,7 +190,7 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         return next(name for name, each in self._vector.groups.items() if each is group)
 
     def _tell(self, actions: Any) -> None:
-        """Writes the actions into the arrays: all of them, or none where one is wrong."""
+        """Writes the actions into the arrays, or none of them if one is wrong."""
         if not isinstance(actions, Mapping):
             raise ArgumentError(
                 f"actions = {brief(repr(actions))}: must be a dict of two numbers for each agent, {{}} for none"
@@ -244,7 +244,7 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
             digits = number.isascii() and number.isdigit()
             if species not in self._vector.groups or not digits or (self._slots and agent not in self._row):
                 raise ArgumentError(f"agent {brief(str(agent))!r}: there is no such agent")
-            # So that two worlds with one seed draw the same actions, also for those who are born in them.
+            # Two worlds with the same seed draw the same actions, also for agents born in them.
             seeds = np.random.SeedSequence([self._vector.simulation.seeds[0], int(number)]).generate_state(2)
             spaces = self._vector.spaces
             observed = spaces.box_of(species)

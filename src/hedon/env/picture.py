@@ -1,4 +1,4 @@
-"""Pictures of worlds that a program drives, as films of runs have them: for the program, or in a window."""
+"""Pictures of worlds that a program drives, drawn as in films of runs: as arrays or in a window."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,18 +10,18 @@ from hedon.experiment.world import World
 from hedon.figure.film import Film
 
 WIDTH = 640
-"""Of a picture [pixel]."""
+"""Width of a picture [pixel]."""
 
 
 class Eye:
-    """Looks at worlds of one config.
+    """Draws worlds of one config.
 
     Args:
-        config: Of the worlds.
+        config: Settings of the worlds.
         mode: `rgb_array` for pictures, `human` for a window.
 
     Raises:
-        ArgumentError: What shows windows is not installed.
+        ArgumentError: The package that shows windows is not installed.
     """
 
     def __init__(self, config: Config, mode: str) -> None:
@@ -31,7 +31,7 @@ class Eye:
         self._films: dict[tuple[int, int], Film] = {}
 
     def see(self, world: World) -> NDArray[np.uint8] | None:
-        """What a world looks like now: (height, width, 3), red, green, blue; None where a window shows it."""
+        """Draws the current state of a world: (height, width, 3), red, green, blue; None if a window shows it."""
         picture = self._picture(world)
         if self._window is None:
             return picture

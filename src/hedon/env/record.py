@@ -1,4 +1,4 @@
-"""Records of worlds that a program drives: the folder that `hedon run` writes, for all that reads runs."""
+"""Records of worlds that a program drives: a folder as `hedon run` writes it, for everything that reads runs."""
 
 import time
 from collections.abc import Sequence
@@ -27,12 +27,12 @@ from hedon.record.writer import Writer
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """What is recorded, for the manifest.
+    """Description of the recorded worlds for the manifest.
 
     Attributes:
-        config: Of the worlds.
-        seeds: Of the worlds.
-        steps: The most that each may do: nobody knows how many its driver will ask for.
+        config: Settings of the worlds.
+        seeds: Seeds of the worlds.
+        steps: Maximum steps of each world, since the driver's number of steps is unknown.
         frames: Steps between two frames; 0 for none.
     """
 
@@ -43,20 +43,21 @@ class Drive:
 
 
 class Records:
-    """Records all worlds of a simulation, which somebody else advances and begins again.
+    """Records all worlds of a simulation that a program advances and restarts.
 
-    Worlds that begin together are one run. Its first folder is the one that is asked for; each later one has a number
-    after its name. A run is written from its first step on, and ends when all of its worlds have begun again.
+    Worlds that start together form one run. The first run uses the given folder; each later one adds a number to its
+    name. A run is written from its first step on, and ends when all its worlds have restarted.
 
     Args:
-        simulation: The worlds, at step 0, with a config that is pinned to its rules.
-        out: The folder; it must not hold a run already.
+        simulation: Worlds at step 0, with a config that is pinned to its rules.
+        out: Folder for the first run; it must not hold a run yet.
         frames: Steps between two frames; 0 for none.
 
     Raises:
-        ArgumentError: The config names founders or networks, which only a run begins with, or another value is wrong.
+        ArgumentError: The config names founders or networks, which only a run can start with, or another value is
+            wrong.
         ConfigError: A measure that the config adds cannot be computed.
-        RecordError: The folder holds a run already, is in use, or cannot be written.
+        RecordError: The folder already holds a run, is in use, or cannot be written.
     """
 
     def __init__(self, simulation: Simulation, out: Path | str, frames: int) -> None:
@@ -71,16 +72,16 @@ class Records:
         self._runs = [RunRecord(simulation, simulation.worlds, self.folder, self._frames)]
 
     def require_open(self) -> None:
-        """Refuses a step after the end of the records.
+        """Refuses a step after the records are closed.
 
         Raises:
-            ArgumentError: They are closed.
+            ArgumentError: The records are closed.
         """
         if self._closed:
             raise ArgumentError(f"step: the records in {self.folder} are closed: go on with a clone, which has none")
 
     def advance(self) -> None:
-        """Advances the worlds by one step, and writes what is to be written then.
+        """Advances the worlds by one step, and writes the records that are due.
 
         Raises:
             EngineError: A world reports an error; its state is in the folder `fault`.
@@ -93,32 +94,32 @@ class Records:
         except EngineError as error:
             self.fail(str(error))
             raise
-        except KeyboardInterrupt:  # raised when the step was done
+        except KeyboardInterrupt:  # raised after the step is done
             self.note(time.perf_counter() - begun)
             raise
         self.note(time.perf_counter() - begun)
 
     def fail(self, fault: str) -> None:
-        """Ends the records at an error of a world."""
+        """Ends the records after an error in a world."""
         for run in self._runs:
             run.fail(fault)
         self._closed = True
 
     def begin(self) -> None:
-        """Begins the folders of worlds that are about to do their first step."""
+        """Creates the folders of worlds that are about to take their first step."""
         for run in self._runs:
             run.begin()
 
     def note(self, seconds: float) -> None:
-        """Writes what is to be written after a step, which took some time [s]."""
+        """Writes the records due after a step that took `seconds` [s]."""
         for run in self._runs:
             run.note(seconds)
 
     def end(self, worlds: NDArray[np.bool_], seeds: Sequence[int]) -> None:
-        """Ends the records of some worlds, which are about to begin again with these seeds.
+        """Ends the records of worlds that are about to restart with these seeds.
 
         Raises:
-            ArgumentError: A run cannot have these seeds: one is too large, or appears twice. Nothing is changed.
+            ArgumentError: A seed is too large for a run, or appears twice. Nothing is changed.
         """
         different(seed_list(seeds))
         for run in self._runs:
@@ -126,17 +127,17 @@ class Records:
         self._runs = [run for run in self._runs if run.worlds]
 
     def begin_again(self, worlds: NDArray[np.bool_]) -> None:
-        """Prepares the records of worlds that have begun again."""
-        waiting = {world.index for run in self._runs for world in run.worlds}  # those without a step so far
+        """Prepares the records of worlds that have restarted."""
+        waiting = {world.index for run in self._runs for world in run.worlds}  # worlds without a step so far
         begun = [world for world in self._simulation.worlds if worlds[world.index] and world.index not in waiting]
         if begun:
             self._runs.append(RunRecord(self._simulation, begun, free_folder(self.folder), self._frames))
 
     def close(self) -> None:
-        """Writes all that is left; a second call changes nothing.
+        """Writes everything that is pending; a second call has no effect.
 
         Raises:
-            RecordError: Something could not be written.
+            RecordError: A file could not be written.
         """
         for run in self._runs:
             run.close()
@@ -144,16 +145,16 @@ class Records:
 
 
 class RunRecord:
-    """Writes the run folder of worlds that begin together.
+    """Writes the run folder of worlds that start together.
 
     Args:
-        simulation: With the worlds.
-        worlds: Those of the run, at step 0.
-        out: The folder.
+        simulation: The simulation that has the worlds.
+        worlds: Worlds of the run, at step 0.
+        out: Folder of the run.
         frames: Steps between two frames; 0 for none.
 
     Raises:
-        RecordError: The folder holds a run already, is in use, or cannot be written.
+        RecordError: The folder already holds a run, is in use, or cannot be written.
     """
 
     def __init__(self, simulation: Simulation, worlds: Sequence[World], out: Path, frames: int) -> None:
@@ -171,7 +172,7 @@ class RunRecord:
             self._held = held.pop_all()
 
     def begin(self) -> None:
-        """Writes the beginning of the run, before the first step of its worlds."""
+        """Writes the start of the run, before the first step of its worlds."""
         if self._recorder is not None or not self.worlds:
             return
         simulation, every = self._simulation, list(self.worlds)
@@ -183,7 +184,7 @@ class RunRecord:
         self._recorder.checkpoint(0, 0.0)
 
     def note(self, seconds: float) -> None:
-        """Writes what is to be written after a step."""
+        """Writes the records due after a step."""
         recorder = self._recorder
         if recorder is None:
             return
@@ -194,7 +195,7 @@ class RunRecord:
         if not (ends or shown or self._step >= self._next):
             return
         self._writer.require_folder()
-        # The engine keeps deaths until they are read: look again before they can fill an eighth of its room.
+        # The engine keeps deaths until they are read: check again before they can fill an eighth of its space.
         full = 8 * max(world.waiting_deaths for world in self.worlds)
         recorder.deaths()
         self._next = self._step + max(1, int(min(self._window, 1 / full if full else self._window)))
@@ -202,11 +203,11 @@ class RunRecord:
             recorder.interval()
         if shown:
             recorder.frame()
-        if recorder.checkpoint_due and not self._ends:  # a checkpoint has all worlds of a run
+        if recorder.checkpoint_due and not self._ends:  # a checkpoint needs all worlds of a run
             recorder.checkpoint(self._step, self._seconds)
 
     def leave(self, worlds: Sequence[World]) -> None:
-        """Ends the records of some of its worlds, and the run with the last of them; without a step, nothing."""
+        """Ends the records of some worlds, and the run with the last of them; does nothing before the first step."""
         if self._recorder is None or not worlds:
             return
         if len(worlds) == len(self.worlds):
@@ -218,17 +219,17 @@ class RunRecord:
         self.worlds = [world for world in self.worlds if world not in worlds]
 
     def fail(self, fault: str) -> None:
-        """Ends the run at an error of a world."""
+        """Ends the run after an error in a world."""
         if self._recorder is not None:
             self._manifest = replace(self._manifest, fault=fault)
             self._recorder.fault(self._seconds)
             self.close("failed")
 
     def close(self, status: str = "finished") -> None:
-        """Writes all that is left and the end of the manifest; a second call changes nothing.
+        """Writes everything that is pending, and the end of the manifest; a second call has no effect.
 
         Raises:
-            RecordError: Something could not be written.
+            RecordError: A file could not be written.
         """
         recorder = self._recorder
         with self._held:

@@ -1,4 +1,4 @@
-"""Slots of worlds as environments of Stable-Baselines3, which must be installed: `pip install stable-baselines3`."""
+"""Slots of worlds as Stable-Baselines3 environments; install it with `pip install stable-baselines3`."""
 
 import time
 from collections.abc import Iterable, Sequence
@@ -15,18 +15,18 @@ from hedon.error import ArgumentError
 
 
 class SlotVecEnv(VecEnv, Copied):
-    """Each slot of a species in each world as an environment: one network acts for all agents, and learns from all.
+    """Each slot of a species in each world is an environment; one network acts for all agents and learns from all.
 
-    It needs Stable-Baselines3, which hedon does not bring: `pip install stable-baselines3`.
+    This class needs Stable-Baselines3, which hedon does not install: `pip install stable-baselines3`.
 
-    An episode is a life: it ends at a death (`dones`), and its info has `episode`, with what it was paid (`r`) and how
-    many steps it took (`l`), as Stable-Baselines3's monitors write it; none is needed. While nobody lives in a slot, it
-    shows zeros and pays 0, and its infos have `alive: False`. Worlds that have come to `max_steps`, or in which no
-    agent of the species is left, begin again with seeds drawn from the first ones; if time ended a life, its info has
-    `TimeLimit.truncated`. The last observation of a life is in `terminal_observation`: zeros after death.
+    An episode is a life: it ends with a death (`dones`), and its info has `episode`, with the total reward (`r`) and
+    the length in steps (`l`), as Stable-Baselines3's monitors write it; no monitor is needed. An empty slot observes
+    zeros, gets a reward of 0, and has `alive: False` in its info. Worlds that have reached `max_steps`, or have no
+    agent of the species left, restart with seeds drawn from the first ones; the info of a life cut off at `max_steps`
+    has `TimeLimit.truncated`. `terminal_observation` holds the last observation of a life: zeros after death.
 
     Args:
-        worlds: Of `hedon.make`, with one driven species; nobody else may step or reset them.
+        worlds: Worlds from `hedon.make` with one driven species; nothing else may step or reset them.
 
     Raises:
         ArgumentError: Several species are driven.
@@ -45,17 +45,19 @@ class SlotVecEnv(VecEnv, Copied):
         return self.lives.group
 
     def reset(self) -> Any:
-        """Begins all worlds: (slots, entries)."""
-        seed = next((each for each in self._seeds if each is not None), None)  # of the first world
+        """Starts all worlds; returns the observations (slots, entries)."""
+        seed = next((each for each in self._seeds if each is not None), None)  # seed of the first world
         self._reset_seeds()
         return self.lives.reset(seed)
 
     def step_async(self, actions: Any) -> None:
-        """Tells every agent what to do: (slots, 2)."""
+        """Sets the actions of all agents: (slots, 2)."""
         self._given = actions
 
     def step_wait(self) -> Any:
-        """Advances the worlds: observations (slots, entries), rewards (slots,), ends of lives (slots,), infos."""
+        """Advances the worlds; returns observations (slots, entries), rewards (slots,), ends of lives (slots,),
+        infos.
+        """
         step = self.lives.step(self._given)
         infos: list[dict[str, Any]] = [{"alive": each} for each in step.alive.tolist()]
         now = round(time.monotonic() - self._begun, 6)
@@ -78,7 +80,7 @@ class SlotVecEnv(VecEnv, Copied):
         self.worlds.close()
 
     def get_images(self) -> Sequence[Any]:
-        """A picture of each world."""
+        """Draws each world."""
         return [self.worlds.render(i) for i in range(len(self.worlds.simulation.worlds))]
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
@@ -86,7 +88,7 @@ class SlotVecEnv(VecEnv, Copied):
         return [getattr(self.worlds, attr_name)] * self._count(indices)
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Slots have no attributes of their own.
+        """Not supported: slots have no attributes of their own.
 
         Raises:
             ArgumentError: Always.
@@ -94,7 +96,7 @@ class SlotVecEnv(VecEnv, Copied):
         raise ArgumentError(f"{attr_name}: slots have no attributes of their own: change the worlds")
 
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
-        """Slots have no methods of their own.
+        """Not supported: slots have no methods of their own.
 
         Raises:
             ArgumentError: Always.
@@ -102,7 +104,7 @@ class SlotVecEnv(VecEnv, Copied):
         raise ArgumentError(f"{method_name}: slots have no methods of their own: call those of the worlds")
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
-        """None is."""
+        """Always False: no slot is wrapped."""
         return [False] * self._count(indices)
 
     def _count(self, indices: Any) -> int:

@@ -1,4 +1,4 @@
-"""What a step of worlds is for each slot as an environment of its own: whose life ended, and what it was paid."""
+"""A step of the worlds with each slot as its own environment: which lives ended, and their rewards."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,17 +14,17 @@ from hedon.error import ArgumentError
 
 @dataclass(frozen=True, slots=True)
 class SlotStep:
-    """What all slots of all worlds did in a step.
+    """Results of a step for all slots of all worlds.
 
     Attributes:
-        observations: (slots, entries); of lives that ended, `last`, unless what follows shows at once.
-        rewards: (slots,), of who was there before the step.
-        ended: (slots,), whether a life ended: by death, or since its world is over.
-        cut: (slots,), whether a life ended that would go on: its time was over.
-        last: (slots, entries), the last observation of each life that ended; zeros after death.
-        paid: (slots,), what each life that ended was paid; 0 elsewhere.
-        lived: (slots,), how long each life that ended was [step]; 0 elsewhere.
-        alive: (slots,), whether anybody is there now.
+        observations: (slots, entries); `last` for lives that ended, unless the next life or world shows at once.
+        rewards: (slots,), rewards of the agents that were there before the step.
+        ended: (slots,), whether a life ended, by death or with its world.
+        cut: (slots,), whether a life that would have continued ended at `max_steps`.
+        last: (slots, entries), last observation of each life that ended; zeros after death.
+        paid: (slots,), total reward of each life that ended; 0 elsewhere.
+        lived: (slots,), length of each life that ended [step]; 0 elsewhere.
+        alive: (slots,), whether an agent lives there now.
     """
 
     observations: NDArray[np.float32]
@@ -38,16 +38,16 @@ class SlotStep:
 
 
 class SlotLives:
-    """The slots of one driven species, whose worlds begin again by themselves when time is over or nobody is left.
+    """The slots of one driven species, whose worlds restart by themselves at `max_steps` or when no agent is left.
 
     Args:
-        worlds: Of `hedon.make`, with one driven species; nothing else may step or reset them.
-        at_once: Whether worlds that are over begin again in the same step, and a newborn shows in the step in which
-            the last agent of its slot died; otherwise both do in the next one.
+        worlds: Worlds from `hedon.make` with one driven species; nothing else may step or reset them.
+        at_once: Whether a world that is over restarts in the same step, and a newborn appears in the step in which its
+            slot's last agent died; otherwise both happen in the next step.
 
     Attributes:
-        worlds: Themselves.
-        group: The agents.
+        worlds: The driven worlds.
+        group: The agents in the slots.
 
     Raises:
         ArgumentError: Several species are driven.
@@ -63,11 +63,11 @@ class SlotLives:
 
     @property
     def count(self) -> int:
-        """How many slots there are in all worlds."""
+        """Number of slots in all worlds."""
         return self.group.ids.size
 
     def reset(self, seed: Any = None) -> NDArray[np.float32]:
-        """Begins all worlds; returns the observations (slots, entries)."""
+        """Starts all worlds; returns the observations (slots, entries)."""
         self.worlds.reset(seed=seed)
         self._over = np.zeros(len(self.group.ids), np.bool_)
         self._paid[...], self._lived[...] = 0, 0
@@ -77,7 +77,7 @@ class SlotLives:
         """Advances all worlds.
 
         Args:
-            actions: (slots, 2), or the array `actions` of the group.
+            actions: (slots, 2), or the group's array `actions`.
         """
         group, worlds, begins = self.group, self.worlds, self._over
         worlds.step(actions)

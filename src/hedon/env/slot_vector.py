@@ -1,4 +1,4 @@
-"""Slots of worlds as a vector environment of Gymnasium."""
+"""Slots of worlds as a Gymnasium vector environment."""
 
 from typing import Any
 
@@ -13,20 +13,20 @@ from hedon.env.vector_base import Floats, WorldsVectorEnv
 
 
 class SlotVectorEnv(WorldsVectorEnv):
-    """Each slot of a species in each world as an environment: one network acts for all agents, and learns from all.
+    """Each slot of a species in each world is an environment; one network acts for all agents and learns from all.
 
-    An episode is a life. A slot whose agent has died observes zeros and is paid 0 until an agent is born there. If one
-    was born in that very step, its first step belongs to no episode, since Gymnasium ignores the step after an end.
-    Worlds that have come to `max_steps`, or in which no agent of the species is left, begin again in the next step,
+    An episode is a life. After its agent has died, a slot observes zeros and gets a reward of 0 until an agent is born
+    there. If one was born in that very step, its first step belongs to no episode, since Gymnasium ignores the step
+    after an end. Worlds that have reached `max_steps`, or have no agent of the species left, restart in the next step,
     with seeds drawn from the first ones.
 
-    `infos` contains `alive` (slots,), the mask of slots with an agent, and where a life ended `life`: what it was paid
-    (`r`) and how many steps it took (`l`), with the mask `_life`. Gymnasium's `RecordEpisodeStatistics` also counts the
-    steps in which a slot waited for its next agent, and leaves out first steps that belong to no episode; `life` tells
+    `infos` contains `alive` (slots,), the mask of slots with an agent, and, if a life ended, `life`: its total reward
+    (`r`) and its length in steps (`l`), with the mask `_life`. Gymnasium's `RecordEpisodeStatistics` also counts the
+    steps in which a slot waited for its next agent, and omits first steps that belong to no episode; `life` covers
     whole lives.
 
     Args:
-        worlds: Of `hedon.make`, with one driven species; nothing else may step or reset them.
+        worlds: Worlds from `hedon.make` with one driven species; nothing else may step or reset them.
 
     Raises:
         ArgumentError: Several species are driven.
@@ -50,17 +50,17 @@ class SlotVectorEnv(WorldsVectorEnv):
     def reset(
         self, *, seed: int | list[int] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Floats, dict[str, Any]]:
-        """Begins all worlds.
+        """Starts all worlds.
 
         Args:
-            seed: Of the first world, whose followers have the next numbers; or one for each world.
-            options: None are known.
+            seed: Seed of the first world, with the following numbers for the others; or one seed per world.
+            options: Must be empty; no option is known.
 
         Returns:
             The observations (slots, entries), and infos.
 
         Raises:
-            ArgumentError: A seed is wrong, or `options` is no dictionary.
+            ArgumentError: A seed is wrong, or `options` is not a dictionary.
         """
         options_of(options)
         rows = self.lives.reset(seed)
@@ -75,10 +75,11 @@ class SlotVectorEnv(WorldsVectorEnv):
             actions: (slots, 2), left and right motor; rows of empty slots are not read.
 
         Returns:
-            Observations (slots, entries), rewards (slots,), deaths (slots,), lives that time ended (slots,), infos.
+            Observations (slots, entries), rewards (slots,), deaths (slots,), lives cut off at `max_steps` (slots,),
+            infos.
 
         Raises:
-            ArgumentError: An action of a living agent is not a number that it can be.
+            ArgumentError: The action of a living agent is invalid.
         """
         step = self.lives.step(actions)
         infos: dict[str, Any] = {"alive": step.alive}

@@ -1,4 +1,4 @@
-"""What observations and actions can be, as spaces of Gymnasium."""
+"""Ranges of observations and actions as Gymnasium spaces."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -18,10 +18,10 @@ from hedon.error import HedonError
 
 
 def bounds(config: Config, name: str) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """The least and the greatest that each entry of an observation can be, (entries,) each.
+    """Lower and upper bound of each entry of an observation, (entries,) each.
 
-    What a channel has for limits is divided as the engine divides it, in 32 bits. What an agent holds of a store is at
-    most its capacity, the largest that its gene allows where one sets it.
+    Limits of channels are divided as in the engine, in 32 bits. A store's level is at most its capacity, or the largest
+    capacity that a gene allows.
     """
     species, layout = config.species[name], layouts(config)[name]
     capacities = [_capacity(species, layout, store) for store in species.stores]
@@ -46,11 +46,11 @@ def _capacity(species: SpeciesConfig, layout: SpeciesLayout, store: str) -> floa
 
 
 class Spaces:
-    """The spaces of the agents of some species: of one species a Box, of several a Dict of them by name.
+    """Spaces of the agents of driven species: a Box for one species, a Dict by name for several.
 
     Args:
-        config: With the species.
-        groups: Their agents, by the name of the species.
+        config: Settings that define the species.
+        groups: Agents of each species, by its name.
 
     Raises:
         HedonError: Gymnasium is not installed.
@@ -66,31 +66,31 @@ class Spaces:
 
     @cached_property
     def observation(self) -> Any:
-        """What one agent observes."""
+        """Space of one agent's observation."""
         return self._of({name: self.box_of(name) for name in self._groups})
 
     @cached_property
     def action(self) -> Any:
-        """What one agent does."""
+        """Space of one agent's action."""
         return self._of({name: self.action_box(name) for name in self._groups})
 
     @cached_property
     def observations(self) -> Any:
-        """What all agents observe, (worlds, slots, entries)."""
+        """Space of all agents' observations, (worlds, slots, entries)."""
         return self._of({name: self.box_of(name, group.ids.shape) for name, group in self._groups.items()})
 
     @cached_property
     def actions(self) -> Any:
-        """What all agents do, (worlds, slots, 2)."""
+        """Space of all agents' actions, (worlds, slots, 2)."""
         return self._of({name: self.action_box(name, group.ids.shape) for name, group in self._groups.items()})
 
     def box_of(self, name: str, rows: tuple[int, ...] = ()) -> Any:
-        """The Box of the observations of a species."""
+        """Box of the observations of a species."""
         low, high = (np.broadcast_to(bound, (*rows, len(bound))) for bound in self._observed[name])
         return self._spaces.Box(low, high, dtype=np.float32)
 
     def action_box(self, name: str, rows: tuple[int, ...] = (), seed: int | None = None) -> Any:
-        """The Box of the actions of a species; without bounds where any number is an action."""
+        """Box of the actions of a species; unbounded if any number is an action."""
         group = self._groups[name]
         low, high = (-np.inf, np.inf) if group.open else (group.low, group.high)
         return self._spaces.Box(low, high, (*rows, len(ACTIONS)), np.float32, seed=seed)

@@ -1,6 +1,6 @@
-"""Many worlds as arrays: a caller gives actions and gets observations and rewards, all in arrays that stay.
+"""Many worlds as arrays: a caller sets actions and reads observations and rewards in arrays that are never replaced.
 
-The engine reads and writes the arrays that the groups of agents hold: a step makes and copies none of them.
+The engine reads and writes the arrays of the groups directly, so a step allocates and copies none of them.
 """
 
 import copy
@@ -27,38 +27,38 @@ RENDER_MODES = ("rgb_array", "human")
 
 
 class VectorEnv(Cloned):
-    """Worlds whose agents, all or those of some species, are driven by the caller; `hedon.make` makes them.
+    """Worlds in which the caller drives all agents or those of some species; `hedon.make` creates them.
 
-    What `reset` and `step` return, and what the attributes below hold, are the same arrays each time, of shape (worlds,
-    slots, …): a row is a *slot*, in which agents live one after another. Copy what you keep. With several driven
-    species, each of them is a dictionary of such arrays by species.
+    `reset`, `step` and the attributes below always give the same arrays, of shape (worlds, slots, …): a row is a
+    *slot*, in which agents live one after another. Copy what you want to keep. If several species are driven, each
+    array becomes a dictionary of arrays by species.
 
     Args:
-        config: Settings of the worlds; then everything as for `hedon.make`.
-        worlds: How many.
-        seed: Of the first world, or of each; None for a first one drawn by chance.
-        species: Whose agents the caller drives.
-        actions: What their numbers are.
-        repeat: Steps of the worlds in one step.
-        max_steps: Steps of a world after which its agents are truncated.
-        render_mode: What `render` gives.
+        config: Settings of the worlds. The other arguments work as in `hedon.make`.
+        worlds: Number of worlds.
+        seed: Seed of the first world, or one seed per world; None for a random first one.
+        species: Species whose agents the caller drives.
+        actions: Meaning of the numbers in an action.
+        repeat: World steps per environment step.
+        max_steps: World steps after which agents are truncated.
+        render_mode: What `render` produces.
         threads: As in `hedon.Simulation`.
         backend: As in `hedon.Simulation`.
         record: Folder for the records of the worlds.
-        frames: Steps of the worlds between two frames of the records.
-        world: The saved world that all begin as.
+        frames: World steps between two recorded frames.
+        world: Saved world from which all worlds start.
 
     Attributes:
-        config: The config, with the policy `external` for the species that are driven.
-        groups: The driven agents, by the name of their species, with more arrays: `Group`.
-        simulation: The worlds themselves, to be read between steps; nothing else advances or restores them.
-        repeat: Steps of the worlds in one step.
-        max_steps: Steps of a world after which its agents are truncated.
-        render_mode: What `render` gives.
-        spaces: What observations and actions can be, for `single_observation_space` and the others.
+        config: The config, with the policy `external` for the driven species.
+        groups: The driven agents by name of their species, with more arrays: `Group`.
+        simulation: The underlying worlds, for reading between steps; do not advance or restore them otherwise.
+        repeat: World steps per environment step.
+        max_steps: World steps after which agents are truncated.
+        render_mode: What `render` produces.
+        spaces: Spaces of observations and actions, for `single_observation_space` and the others.
 
     Raises:
-        ArgumentError: An argument is not what it can be, or `frames` is given without `record`.
+        ArgumentError: An argument is invalid, or `frames` is given without `record`.
 
     Example:
         >>> import hedon
@@ -100,7 +100,7 @@ class VectorEnv(Cloned):
         self._made(simulation, names, form)
         self._open(np.ones(len(seeds), np.bool_))
         if record is not None:
-            from hedon.env.record import Records  # loads what writes tables
+            from hedon.env.record import Records  # imported late: it loads the table writers
 
             self._record = Records(simulation, record, frames)
 
@@ -123,9 +123,9 @@ class VectorEnv(Cloned):
         }
         self._form, self._fresh = form, True
         self._seeded_by(simulation.seeds)
-        self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since it began
+        self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since its start
         self._eye: Any = None
-        self._record: Any = None  # also of a copy: it has no records
+        self._record: Any = None  # a copy has no records either
         self._keep_own("_told", "spaces")
 
     def __repr__(self) -> str:
@@ -148,47 +148,47 @@ class VectorEnv(Cloned):
 
     @property
     def actions(self) -> Any:
-        """(worlds, slots, 2) float32: write here and give it to `step`, and nothing is copied."""
+        """(worlds, slots, 2) float32: write actions here and pass it to `step`, so that nothing is copied."""
         return self._of("actions")
 
     @cached_property
     def spaces(self) -> Spaces:
-        """What observations and actions can be, as spaces of Gymnasium."""
+        """Spaces of observations and actions, for Gymnasium."""
         return Spaces(self.config, self.groups)
 
     @property
     def single_observation_space(self) -> Any:
-        """The `gymnasium.spaces.Box` of the observations of one agent; by species where several are driven."""
+        """`gymnasium.spaces.Box` of one agent's observation; a Dict by species if several are driven."""
         return self.spaces.observation
 
     @property
     def single_action_space(self) -> Any:
-        """The same of its actions: two motors, left and right."""
+        """Space of one agent's action: two motors, left and right."""
         return self.spaces.action
 
     @property
     def observation_space(self) -> Any:
-        """The same of all slots of all worlds."""
+        """Space of the observations of all slots of all worlds."""
         return self.spaces.observations
 
     @property
     def action_space(self) -> Any:
-        """The same of the actions of all slots of all worlds."""
+        """Space of the actions of all slots of all worlds."""
         return self.spaces.actions
 
     def reset(self, seed: int | Sequence[int] | None = None, options: Any = None) -> tuple[Any, dict[str, Any]]:
-        """Begins worlds again, at first with the seeds that they were made with, then with seeds drawn from these.
+        """Restarts worlds, the first time with the seeds that they were created with, then with seeds drawn from these.
 
         Args:
-            seed: Of the first world, whose followers have the next numbers; or a list with one for each world.
-            options: `{"reset_mask": mask}` with mask (worlds,) bool, to begin only some worlds.
+            seed: Seed of the first world, with the following numbers for the others; or a list with one seed per world.
+            options: `{"reset_mask": mask}` with mask (worlds,) bool restarts only some worlds.
 
         Returns:
-            The observations, and what else there is to know: as of `step`.
+            The observations and the dictionary, as from `step`.
 
         Raises:
             ArgumentError: A seed or an option is wrong.
-            EngineError: There is no room for the initial agents or foods of a world.
+            EngineError: A world has no room for its initial agents or foods.
         """
         mask = reset_mask(options, len(self.simulation.worlds))
         if seed is not None:
@@ -215,24 +215,24 @@ class VectorEnv(Cloned):
         return self._told[0], self._told[4]
 
     def _seeded_by(self, seeds: Sequence[int]) -> None:
-        """Fixes which seeds later worlds get: those of environments with neighboring seeds have nothing in common."""
+        """Fixes the seeds of later worlds; environments with neighboring seeds have nothing in common."""
         self._next_seed = int(np.random.SeedSequence(list(map(int, seeds))).generate_state(1, np.uint64)[0])
 
     def _draw_seeds(self, count: int) -> list[int]:
         state, *drawn = np.random.SeedSequence(self._next_seed).generate_state(1 + count, np.uint64).tolist()
         self._next_seed = state
-        return [seed % (MAX_SEED + 1) for seed in drawn]  # those that records can have
+        return [seed % (MAX_SEED + 1) for seed in drawn]  # within the range of records
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """Advances every world by `repeat` steps with these actions.
 
-        It is the same as a call for each of these steps with the same actions: rewards and meals are sums, and all
-        births and deaths are counted. Ctrl-C ends it after the current step; all arrays are then of that step.
+        This equals separate calls for each step with the same actions: rewards and meals are summed, and all births and
+        deaths are counted. Ctrl-C stops it after the current step; all arrays then describe that step.
 
         Args:
-            actions: (worlds, slots, 2): `VectorEnv.actions`, or another array, which is copied there; also all slots as
-                one table, (worlds · slots, 2). With several
-                species a dictionary of them; a species that is not in it goes on as before.
+            actions: (worlds, slots, 2): `VectorEnv.actions`, or another array, which is copied into it; or all slots as
+                one table, (worlds · slots, 2). For several species, a dictionary of these; a species that is missing
+                from it keeps its actions.
 
         Returns:
             observations (worlds, slots, entries), rewards, terminated and truncated (worlds, slots), and a dictionary
@@ -240,9 +240,8 @@ class VectorEnv(Cloned):
             (worlds, meals): see `Group`.
 
         Raises:
-            ArgumentError: An action of a living agent is not a number that it can be. Nothing is changed by that:
-                `actions` has what it had before the call, also what was written into it and is wrong. Or the worlds
-                are recorded, and their records are closed.
+            ArgumentError: The action of a living agent is invalid, or the records of the worlds are closed. Nothing
+                changes: `actions` is as before the call, including wrong numbers that were written into it.
             EngineError: A world reports an error.
         """
         engine = self.simulation.engine
@@ -256,7 +255,7 @@ class VectorEnv(Cloned):
         while done < self.repeat and stopped is None:
             try:
                 self._record.advance() if self._record else engine.run(1)
-            except KeyboardInterrupt as interrupt:  # raised by the engine when the step was done
+            except KeyboardInterrupt as interrupt:  # raised by the engine after the step
                 stopped = interrupt
             done += 1
             last = done == self.repeat or stopped is not None
@@ -273,26 +272,26 @@ class VectorEnv(Cloned):
         return self._told
 
     def render(self, world: int = 0) -> NDArray[np.uint8] | None:
-        """A picture of a world as it is now: (height, width, 3); None without a `render_mode`.
+        """Draws the current state of a world: (height, width, 3); None without a `render_mode`.
 
-        With `human` a window shows it instead, as each step and reset does with world 0, until somebody closes it.
+        With `human`, a window shows it instead, until it is closed; each step and reset also shows world 0 there.
 
         Raises:
-            ArgumentError: There is no such world; or pygame, which shows windows, is not installed.
+            ArgumentError: There is no such world, or pygame, which shows windows, is not installed.
         """
         if self.render_mode is None:
             return None
-        from hedon.env.picture import Eye  # loads matplotlib
+        from hedon.env.picture import Eye  # imported late: it loads matplotlib
 
         index = integer("world", world, 0, len(self.simulation.worlds) - 1)
         self._eye = self._eye or Eye(self.config, self.render_mode)
         return self._eye.see(self.simulation.worlds[index])
 
     def close(self) -> None:
-        """Ends the records and closes the window, if there are some; as a context manager, it does so at its end.
+        """Finishes the records and closes the window, if there are any; a `with` block does so at its end.
 
         Raises:
-            RecordError: They cannot be written.
+            RecordError: The records cannot be written.
         """
         for each in filter(None, (self._record, self._eye)):
             each.close()
@@ -304,7 +303,7 @@ class VectorEnv(Cloned):
         self.close()
 
     def save(self) -> bytes:
-        """All worlds and all arrays as they are now, as `hedon.Simulation.save` has it.
+        """Saves the current state of all worlds and arrays, as `hedon.Simulation.save` does.
 
         Raises:
             EngineError: A world has stopped at a fault.
@@ -312,11 +311,10 @@ class VectorEnv(Cloned):
         return self.simulation._pack(text_of(self._about(), self._arrays()))
 
     def restore(self, saved: bytes) -> None:
-        """Goes on from what `save` gave: as many worlds of the same config, driven in the same way.
+        """Continues from a state from `save`, of as many worlds with the same config, driven in the same way.
 
         Raises:
-            ArgumentError: It is something else, or is damaged, or the worlds are recorded. Everything then stays as it
-                is.
+            ArgumentError: The state is of something else or damaged, or the worlds are recorded. Nothing changes.
         """
         if self._record is not None:
             raise ArgumentError("restore: worlds that are recorded only go on or begin again: make others for it")
@@ -328,7 +326,7 @@ class VectorEnv(Cloned):
         (self._next_seed,), (self._fresh,) = found["", "next_seed"].tolist(), found["", "fresh"].tolist()
 
     def clone(self) -> Self:
-        """A copy with worlds and arrays of its own, which goes on as this one does; it is not recorded."""
+        """Returns a copy with its own worlds and arrays, which continues as this one would; it is not recorded."""
         made = type(self).__new__(type(self))
         made._go_on(self.simulation._fresh_one(), **self._given(), saved=self.save())
         return made
@@ -346,18 +344,18 @@ class VectorEnv(Cloned):
         return {**given, "about": self._about(), "added": self._added()}
 
     def _go_on(self, simulation: Simulation, about: Any, saved: bytes, added: dict[str, Any], **given: Any) -> None:
-        """Makes a copy of what another one was."""
+        """Sets up a copy from the state of another environment."""
         vars(self).update(given)
         self._made(simulation, about["species"], about["actions"])
         self.restore(saved)
         vars(self).update(copy.deepcopy(added))
 
     def _about(self) -> dict[str, Any]:
-        """What two environments must share to go on from one another's states."""
+        """What two environments must share to continue from each other's states."""
         return {"species": list(self.groups), "actions": self._form}
 
     def _arrays(self) -> dict[tuple[str, str], NDArray[Any]]:
-        """Everything beside the worlds, by species and name."""
+        """All arrays besides the worlds, by species and name."""
         own = {
             "steps": self._steps,
             "next_seed": np.array([self._next_seed], np.uint64),
@@ -369,18 +367,18 @@ class VectorEnv(Cloned):
 
     @cached_property
     def _told(self) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
-        """What every step returns: arrays that stay."""
+        """The arrays that every step returns; they are never replaced."""
         info = {name: self._of(name) for name in ("alive", "born", "births", "deaths", "meals")}
         seen, paid, died, cut = map(self._of, ("observations", "rewards", "terminated", "truncated"))
         return seen, paid, died, cut, {"agent_id": self._of("ids"), **info}
 
     def _of(self, name: str) -> Any:
-        """An array of the only driven species, or of each by its name."""
+        """An array of the only driven species, or a dictionary of each species' array."""
         every = {species: getattr(group, name) for species, group in self.groups.items()}
         return every if len(every) > 1 else next(iter(every.values()))
 
     def _judge(self, steps: int) -> None:
-        """Says whose time is over."""
+        """Marks the agents that have reached `max_steps`."""
         self._steps += steps
         if self.max_steps:
             over = (self._steps >= self.max_steps)[:, None]
@@ -388,7 +386,7 @@ class VectorEnv(Cloned):
                 np.logical_and(group.alive, over, out=group.truncated)
 
     def _open(self, worlds: NDArray[np.bool_]) -> None:
-        """Reads worlds that have just begun."""
+        """Reads worlds that have just started."""
         for group in self.groups.values():
             group._open(self.simulation.engine, worlds)
         self._steps[worlds] = 0

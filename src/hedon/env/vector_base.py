@@ -1,4 +1,4 @@
-"""What the vector environments of Gymnasium around worlds of `hedon.make` have in common."""
+"""Common parts of the Gymnasium vector environments around worlds from `hedon.make`."""
 
 from typing import Any
 
@@ -17,14 +17,14 @@ METADATA: dict[str, Any] = {
     "render_fps": 30,
     "autoreset_mode": AutoresetMode.NEXT_STEP,
 }
-"""As Gymnasium's vector environments declare it: what follows an end comes in the next step."""
+"""Declares to Gymnasium that a restart happens in the step after an end."""
 
 
 class WorldsVectorEnv(Copied, gymnasium.vector.VectorEnv[Floats, Floats, NDArray[Any]]):
-    """Several environments in worlds of `hedon.make`.
+    """Several environments in worlds from `hedon.make`.
 
     Args:
-        worlds: With one driven species.
+        worlds: Worlds with one driven species.
         num_envs: Number of environments in them.
     """
 
@@ -38,11 +38,11 @@ class WorldsVectorEnv(Copied, gymnasium.vector.VectorEnv[Floats, Floats, NDArray
         self.action_space = batch_space(self.single_action_space, num_envs)
 
     def render(self) -> tuple[Any, ...] | None:
-        """A picture of each world; None without a `render_mode`."""
+        """Draws each world; None without a `render_mode`."""
         if self.render_mode is None:
             return None
         return tuple(self.worlds.render(i) for i in range(len(self.worlds.simulation.worlds)))
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Ends the records and closes the window, if there are any."""
+        """Finishes the records and closes the window, if there are any."""
         self.worlds.close()

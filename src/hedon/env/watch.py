@@ -1,4 +1,4 @@
-"""Records of worlds that a program of JAX advances: the engine calls, so that the program does not have to."""
+"""Records of worlds that a JAX program advances: the engine calls this module, so the program need not."""
 
 import ctypes
 import time
@@ -19,38 +19,40 @@ CALLBACK = ctypes.CFUNCTYPE(
     ctypes.c_void_p,
     ctypes.c_int64,
 )
-"""A `Watch` of `engine/binding/batch.h`."""
+"""C type of a `Watch` in `engine/binding/batch.h`."""
 BEFORE_STEP, AFTER_STEP, BEGIN, FAULT = range(4)
 
 
 def watch_of(simulation: Simulation, record: Path | str, frames: int) -> "Watch":
-    """Records of the worlds of a simulation. Raises as `Records`."""
+    """Records the worlds of a simulation. Raises the same errors as `Records`."""
     return Watch(Records(simulation, record, frames), len(simulation.worlds))
 
 
 class Watch:
-    """Writes records when the engine says that something is about to happen, or has happened.
+    """Writes records when the engine reports that something is about to happen or has happened.
 
     Args:
-        records: Of all worlds of the simulation.
-        worlds: How many.
+        records: Records of all worlds of the simulation.
+        worlds: Number of worlds.
     """
 
     def __init__(self, records: Records, worlds: int) -> None:
         self._records, self._worlds, self._begun = records, worlds, 0.0
-        self._callback = CALLBACK(self._told)  # the engine has its address alone
+        self._callback = CALLBACK(self._told)  # keeps it alive: the engine has only its address
 
     @property
     def address(self) -> int:
-        """Of the function that the engine calls; valid for as long as this object is there."""
+        """Address of the function that the engine calls, valid while this object exists."""
         return ctypes.cast(self._callback, ctypes.c_void_p).value or 0
 
     def close(self) -> None:
-        """Ends the records."""
+        """Finishes the records."""
         self._records.close()
 
     def _told(self, watched: int, begins: Any, seeds: Any, complaint: int, room: int) -> int:
-        """Writes what belongs to one moment. Returns 0, or 1 with the complaint, since no error passes the engine."""
+        """Writes what is due at one moment. Returns 0, or 1 with a message, as no exception may pass through the
+        engine.
+        """
         try:
             self._write(watched, begins, seeds)
         except (HedonError, OSError) as error:

@@ -9,7 +9,7 @@ PICTURES_PER_SECOND = 30
 
 
 class Window:
-    """A window that shows one picture after the other, not more than thirty in a second.
+    """A window that shows pictures one after another, at most thirty per second.
 
     Raises:
         ArgumentError: pygame is not installed.
@@ -24,10 +24,10 @@ class Window:
         self._clock = pygame.time.Clock()
         self._surface: pygame.Surface | None = None
         self.closed = False
-        """Whether somebody closed it: it shows nothing more."""
+        """Whether the user closed it; it then shows nothing more."""
 
     def show(self, picture: NDArray[np.uint8]) -> None:
-        """Shows a picture, and waits where the last one was shown a moment ago.
+        """Shows a picture, after a pause if the last one was shown a moment ago.
 
         Args:
             picture: (height, width, 3), red, green, blue.

@@ -63,7 +63,7 @@ def walls(arena: ArenaConfig) -> "NDArray[np.float32]":
 
     Returns:
         (count, 4) float32: ax, ay, bx, by of each segment [u]. The inside of the outer polygon is to the right of a →
-            b.
+        b.
     """
     import numpy as np
 
