@@ -1,4 +1,4 @@
-"""What is computed from the records of runs: of worlds, agents, descent and genes; `topic` makes tables of it."""
+"""Measures computed from the records of runs, for worlds, agents, descent and genes; `topic` makes tables of them."""
 
 from lazy_loader import attach_stub
 

@@ -1,4 +1,4 @@
-"""Tables of results, with a title and a note, as they are printed, written and drawn."""
+"""Tables of results with a title and a note, for printing, writing and drawing."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,16 +11,15 @@ from hedon.statistic.interval import ANY, Range, mean_interval
 
 @dataclass(frozen=True)
 class ResultTable:
-    """One table of results.
+    """A table of results.
 
     Attributes:
-        name: unique; names the CSV file.
-        title: what it tells.
-        rows: missing values are null.
-        note: what a reader must know to read it; may be empty.
-        shown: whether it is printed; else it is only written, since it is long.
-        several: whether several conditions were asked about; then readers see of which its rows are, also where only
-            one has rows.
+        name: Unique name, used for the CSV file.
+        title: What the table shows.
+        rows: Data; missing values are null.
+        note: Explanation that readers need; may be empty.
+        shown: Whether the table is printed; a long one is only written.
+        several: Whether several conditions were requested, so that rows show their condition even if only one has rows.
     """
 
     name: str
@@ -34,14 +33,14 @@ class ResultTable:
 def make_table(
     name: str, title: str, rows: Iterable[Mapping[str, Any]], note: str = "", *, shown: bool = True
 ) -> ResultTable:
-    """Makes a table from one mapping per row; NaN becomes null. A table without rows has no columns either.
+    """Makes a table from one mapping per row; NaN becomes null. A table without rows has no columns.
 
     Args:
-        name: of its file.
-        title: above it.
-        rows: values by column; columns appear in the order in which rows first name them.
-        note: below it.
-        shown: whether pages print it, or only its file has it.
+        name: Name of its file.
+        title: Heading of the table.
+        rows: Values by column; columns appear in the order in which rows first use them.
+        note: Explanation below the table.
+        shown: Whether pages print it; otherwise it is only in its file.
     """
     frame = pl.DataFrame(list(rows), infer_schema_length=None).fill_nan(None)
     return ResultTable(name, title, frame, note, shown)

@@ -14,13 +14,11 @@ from hedon.text import brief
 
 SCHEMA = "1"
 """Version of the config schema: which settings exist and what they mean. It enters each digest, and complete files of
-other versions are refused.
-"""
+other versions are refused."""
 
 LATER = (".looks_like",)
 """Endings of the paths of settings added to this schema. If such a setting is off, digests omit it and complete files
-may lack it, so older runs can still be read and resumed.
-"""
+may lack it, so older runs can still be read and resumed."""
 
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 

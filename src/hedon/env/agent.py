@@ -44,9 +44,7 @@ def first_founder(group: Group, world: int) -> int:
 
 
 def answered(others: Policy, group: Group) -> NDArray[Any]:
-    """A policy's actions for all agents, (worlds, slots, 2). Raises ArgumentError unless they are a table of
-    actions.
-    """
+    """A policy's actions for all agents, (worlds, slots, 2). Raises ArgumentError if they form no table of actions."""
     shape = group.actions.shape
     answer = others(group.observations.reshape(-1, len(group.columns)))
     given = np.asarray(answer)

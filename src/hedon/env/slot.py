@@ -55,9 +55,7 @@ class SlotVecEnv(VecEnv, Copied):
         self._given = actions
 
     def step_wait(self) -> Any:
-        """Advances the worlds; returns observations (slots, entries), rewards (slots,), ends of lives (slots,),
-        infos.
-        """
+        """Advances the worlds: observations (slots, entries), rewards (slots,), ends of lives (slots,), infos."""
         step = self.lives.step(self._given)
         infos: list[dict[str, Any]] = [{"alive": each} for each in step.alive.tolist()]
         now = round(time.monotonic() - self._begun, 6)

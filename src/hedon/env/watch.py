@@ -50,9 +50,7 @@ class Watch:
         self._records.close()
 
     def _told(self, watched: int, begins: Any, seeds: Any, complaint: int, room: int) -> int:
-        """Writes what is due at one moment. Returns 0, or 1 with a message, as no exception may pass through the
-        engine.
-        """
+        """Writes what is due at one moment. Returns 0, or 1 with a message, as no exception may reach the engine."""
         try:
             self._write(watched, begins, seeds)
         except (HedonError, OSError) as error:

@@ -1,1 +1,1 @@
-"""Single agents: how long they live, what they eat, how many children they have."""
+"""Single agents: their lifetimes, food and children."""

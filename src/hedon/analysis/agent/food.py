@@ -1,8 +1,7 @@
-"""How much do agents eat?
+"""How much agents eat, by two rules of averaging that give different answers.
 
-Two rules of averaging give different answers. The paper's, as we read it, is a mean over agents of foods per step of
-life, so a short life counts as much as a long one. The other is total foods over total steps lived: what a living
-agent eats in a step.
+The paper's rule, as we read it, is a mean over agents of foods per step of life, so a short life counts as much as a
+long one. The other is total foods over total steps lived: what a living agent eats per step.
 """
 
 from collections.abc import Sequence
@@ -14,15 +13,15 @@ from hedon.analysis.world.species import require_one_species
 
 
 def food_per_step(agents: pl.DataFrame, food_kinds: Sequence[str], *, last: int | None = None) -> float | None:
-    """Mean over the dead of foods eaten / lifetime [1/step]: the paper's rule.
+    """Mean over dead agents of foods eaten / lifetime [1/step]: the paper's rule.
 
     Args:
-        agents: table `agents`.
-        food_kinds: kinds (or species that are eaten) to count, poison too if it is named.
-        last: only over those who died last.
+        agents: Table `agents`.
+        food_kinds: Kinds (or species that are eaten) to count; poison counts too if it is listed.
+        last: Number of agents to average over, those that died last; None for all.
 
     Returns:
-        None where nobody died, or no kind is named, as for who eats no food. Lives of no step are left out.
+        None if no agent died or no kind is listed, as for a species that eats no food. Lives of 0 steps are excluded.
     """
     if not food_kinds:
         return None
@@ -32,11 +31,11 @@ def food_per_step(agents: pl.DataFrame, food_kinds: Sequence[str], *, last: int 
 
 
 def food_per_agent_step(population: pl.DataFrame, food_kinds: Sequence[str]) -> float | None:
-    """Total foods eaten / total steps lived by all agents [1/step]; None where nobody lived, or no kind is named.
+    """Total foods eaten / total steps lived by all agents [1/step]; None if no steps were lived or no kind is listed.
 
     Args:
-        population: table `population`, of one species.
-        food_kinds: kinds to count, poison too if it is named.
+        population: Table `population` of one species.
+        food_kinds: Kinds to count; poison counts too if it is listed.
     """
     require_one_species(population)
     if not food_kinds:

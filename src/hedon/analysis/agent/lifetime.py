@@ -1,7 +1,7 @@
-"""How long do agents live?
+"""How long agents live.
 
-Only the dead have a lifetime. Those who still live when a run ends tend to be the long-lived, so a mean over the dead
-is too small where lives are not short against the run: look at the number alive, or estimate survival instead.
+Only dead agents have a lifetime. Agents still alive at the end of a run tend to be long-lived, so a mean over the dead
+is too small unless lives are short compared with the run: use the number alive, or estimate survival instead.
 """
 
 import numpy as np
@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 
 def dead_agents(agents: pl.DataFrame, *, last: int | None = None, born_in_run: bool = False) -> pl.DataFrame:
-    """The agents with a whole life in the record, by death_step, with the column `lifetime` [step].
+    """Agents with a complete life in the records, by death_step, with the column `lifetime` [step].
 
     Args:
-        agents: table `agents`.
-        last: at most this many of them, those who died last.
-        born_in_run: without the founders, whose energy and genome come from the config.
+        agents: Table `agents`.
+        last: Maximum number of agents, those that died last; None for all.
+        born_in_run: Exclude the founders, whose energy and genome come from the config.
     """
     dead = agents.filter(pl.col("death_step").is_not_null())
     if born_in_run:
@@ -26,23 +26,23 @@ def dead_agents(agents: pl.DataFrame, *, last: int | None = None, born_in_run: b
 
 
 def mean_lifetime(agents: pl.DataFrame, *, last: int | None = None, born_in_run: bool = False) -> float | None:
-    """Mean lifetime of the dead [step], unweighted over agents, as we read the paper's; None where nobody died.
+    """Mean lifetime of dead agents [step], unweighted over agents, as we read the paper's; None if no agent died.
 
     Args:
-        agents: table `agents`.
-        last: only over those who died last.
-        born_in_run: without the founders.
+        agents: Table `agents`.
+        last: Number of agents to average over, those that died last; None for all.
+        born_in_run: Exclude the founders.
     """
     values = dead_agents(agents, last=last, born_in_run=born_in_run)["lifetime"].to_numpy()
     return float(values.mean()) if len(values) else None
 
 
 def durations(agents: pl.DataFrame, last_step: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """How long each agent is known to have lived, and whether it died.
+    """Known duration of each agent's life, and whether the agent died.
 
     Args:
-        agents: table `agents` of one world.
-        last_step: up to which the records reach [step].
+        agents: Table `agents` of one world.
+        last_step: End of the records [step].
 
     Returns:
         Lifetimes or ages so far [step] and whether the agent died, each (n,).

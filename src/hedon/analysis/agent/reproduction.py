@@ -1,7 +1,7 @@
-"""How many children does an agent have in its life, and how unequally?
+"""How many children agents have in their lives, and how unequally.
 
-Only the dead have had all their children, and those who die early are over-represented among the dead of a short
-record. So the numbers are taken over birth cohorts, and each says which share of it has died.
+Only dead agents have had all their children, and a short record over-represents early deaths. The measures are
+therefore computed for birth cohorts, each with the share of it that has died.
 """
 
 from typing import Any
@@ -11,19 +11,19 @@ import polars as pl
 
 from hedon.analysis.agent.cohort import complete_share
 
-_MANY = 10  # agents with this many children or more are counted together
+_MANY = 10  # agents with at least this many children are counted together
 
 
 def reproduction(cohort: pl.DataFrame) -> dict[str, Any]:
-    """Children of the agents of one cohort, whether these died or not.
+    """Children of the agents of one cohort, including agents still alive.
 
     Returns:
         agents, in the cohort; complete, the share of them that has died; mean, children per agent, the realized net
         reproduction; variance of the number of children, with n − 1; opportunity, variance over squared mean: the
-        opportunity for selection, the upper limit of what selection can move any trait by, in squared standard
-        deviations (Crow 1958); childless, the share without children; top_tenth, the share of all children that the
-        tenth of the agents with the most children had; with_0, with_1, …, with_9 and with_10_or_more, agents with as
-        many children. None for what has no value.
+        opportunity for selection, an upper limit of the change of any trait by selection, in squared standard
+        deviations (Crow 1958); childless, the share without children; top_tenth, the share of all children that belongs
+        to the tenth of the agents with the most children; with_0, with_1, …, with_9 and with_10_or_more, agents by
+        number of children. None for undefined values.
     """
     children = cohort["children"].to_numpy().astype(np.float64)
     some, count = len(children) > 0, len(children)

@@ -1,1 +1,1 @@
-"""Who descends from whom, and what a gene does that only follows the pedigree."""
+"""Pedigrees, and the genes that would result from descent without selection."""

@@ -1,6 +1,6 @@
-"""Who descends from whom? The recorded pedigree of one world as arrays, and what can be read off it.
+"""The recorded pedigree of one world as arrays, and measures of it.
 
-Agents are numbered by position: parents come before their children, since an agent_id is never used again.
+Agents are numbered by position: parents come before their children, since an agent_id is never reused.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 ALIVE = np.iinfo(np.int64).max
-"""Stands for the step of death of those who live."""
+"""Step of death of agents that are alive."""
 
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -21,9 +21,9 @@ class Genealogy:
     """The pedigree of one world, by agent_id.
 
     Attributes:
-        parent: position of the parent, −1 for founders and for those whose parent is not recorded, (n,).
-        birth, death: [step], (n,); a death of `ALIVE` for those who live.
-        gaps: agents whose parent is not recorded: a damaged part is missing.
+        parent: Position of the parent, −1 for founders and for agents whose parent is not recorded, (n,).
+        birth, death: Steps of birth and death [step], (n,); the death of living agents is `ALIVE`.
+        gaps: Number of agents whose parent is missing because a part of the records is damaged.
     """
 
     parent: Ints
@@ -38,7 +38,7 @@ class Genealogy:
 
     @property
     def alive(self) -> Flags:
-        """Which agents live at the end of the records, (n,)."""
+        """Whether each agent is alive at the end of the records, (n,)."""
         return self.death == ALIVE
 
 
@@ -46,7 +46,7 @@ def genealogy(agents: pl.DataFrame) -> Genealogy:
     """Builds the pedigree.
 
     Args:
-        agents: table `agents` of one world, by agent_id; columns agent_id, parent_id, birth_step, death_step.
+        agents: Table `agents` of one world, by agent_id; columns agent_id, parent_id, birth_step, death_step.
     """
     ids = agents["agent_id"].to_numpy()
     wanted = agents["parent_id"].fill_null(-1).to_numpy()
@@ -60,11 +60,11 @@ def genealogy(agents: pl.DataFrame) -> Genealogy:
 
 
 def depth(tree: Genealogy) -> Ints:
-    """Generation of each agent, counted in the pedigree: 0 for those without a recorded parent, (n,)."""
+    """Generation of each agent in the pedigree: 0 for agents without a recorded parent, (n,)."""
     generation = np.zeros(tree.size, np.int64)
     current = np.flatnonzero(tree.parent >= 0)
     line = tree.parent[current]
-    while len(current):  # one round per generation: each climbs one step
+    while len(current):  # one round per generation
         generation[current] += 1
         line = tree.parent[line]
         current, line = current[line >= 0], line[line >= 0]
@@ -72,9 +72,9 @@ def depth(tree: Genealogy) -> Ints:
 
 
 def founder(tree: Genealogy) -> Ints:
-    """Position of the first ancestor of each agent, itself where it has no recorded parent, (n,)."""
+    """Position of each agent's first recorded ancestor, itself if it has no recorded parent, (n,)."""
     up = np.where(tree.parent < 0, np.arange(tree.size), tree.parent)
-    while True:  # doubles the length of the climb in each round
+    while True:  # each round doubles the distance climbed
         further = up[up]
         if np.array_equal(further, up):
             return up
@@ -82,11 +82,11 @@ def founder(tree: Genealogy) -> Ints:
 
 
 def ancestry(tree: Genealogy, agents: Ints) -> Flags:
-    """Which agents are among some agents, or are ancestors of one, (n,).
+    """Whether each agent is one of some agents or an ancestor of one, (n,).
 
     Args:
-        tree: the pedigree.
-        agents: positions, (m,).
+        tree: The pedigree.
+        agents: Positions of the agents, (m,).
     """
     marked = np.zeros(tree.size, bool)
     current = np.unique(agents)
@@ -99,17 +99,17 @@ def ancestry(tree: Genealogy, agents: Ints) -> Flags:
 
 
 def common_ancestor(tree: Genealogy, agents: Ints) -> int | None:
-    """The most recent common ancestor of some agents; None if they descend from several founders, or are none.
+    """Most recent common ancestor of some agents; None if they descend from several founders or there are none.
 
     Args:
-        tree: the pedigree.
-        agents: positions, (m,).
+        tree: The pedigree.
+        agents: Positions of the agents, (m,).
     """
     line = ancestry(tree, agents)
     if not len(agents) or np.count_nonzero(line & (tree.parent < 0)) != 1:
         return None
-    # Every ancestor up to the common one leads to all the agents: from the founder down, the first who is one of
-    # the agents or has two children on the way to them is where their lines part.
+    # Every ancestor up to the common one leads to all the agents. Their lines part at the first agent, from the founder
+    # down, that is one of them or has two children among their ancestors.
     marked = np.flatnonzero(line)
     on_the_way = np.bincount(tree.parent[marked][tree.parent[marked] >= 0], minlength=tree.size)
     parts = marked[(on_the_way[marked] != 1) | np.isin(marked, agents)]
@@ -117,11 +117,11 @@ def common_ancestor(tree: Genealogy, agents: Ints) -> int | None:
 
 
 def living_at(tree: Genealogy, step: int) -> Ints:
-    """Positions of those alive after a step.
+    """Positions of the agents alive after a step.
 
     Args:
-        tree: the pedigree.
-        step: after which [step]: agents born in it live, agents that die in it do not.
+        tree: The pedigree.
+        step: Agents born in this step count as alive, agents that die in it do not [step].
 
     Returns:
         Ascending positions, (alive,).
@@ -130,11 +130,11 @@ def living_at(tree: Genealogy, step: int) -> Ints:
 
 
 def families(tree: Genealogy, steps: Ints) -> Ints:
-    """How many founders live, or have living descendants, after each of some steps.
+    """Number of founders that are alive or have living descendants after each of some steps.
 
     Args:
-        tree: the pedigree.
-        steps: times [step], (times,).
+        tree: The pedigree.
+        steps: Times [step], (times,).
 
     Returns:
         Numbers of founders, (times,).
@@ -147,15 +147,15 @@ def families(tree: Genealogy, steps: Ints) -> Ints:
 
 
 def shares_of_descent(tree: Genealogy, agents: pl.DataFrame, amount: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What each agent has of an amount that it and its descendants have; with two parents each has half of a child's.
+    """Sums an amount over each agent and its descendants; of two parents, each gets half of a child's amount.
 
     Args:
-        tree: of one world.
-        agents: its rows of the table `agents`, by agent_id; the column mate_id where some have two parents.
-        amount: of each agent, (n,).
+        tree: Pedigree of one world.
+        agents: The world's rows of the table `agents`, by agent_id; with the column mate_id if some have two parents.
+        amount: Amount of each agent, (n,).
 
     Returns:
-        Sums over the agent itself and all that descend from it, (n,).
+        Sums over each agent and all its descendants, (n,).
     """
     share = amount.astype(np.float64).tolist()
     pairs = list(zip(tree.parent.tolist(), _mates(agents).tolist(), strict=True))
@@ -167,7 +167,7 @@ def shares_of_descent(tree: Genealogy, agents: pl.DataFrame, amount: NDArray[np.
 
 
 def _mates(agents: pl.DataFrame) -> Ints:
-    """Position of the second parent of each agent, −1 where there is none, (n,)."""
+    """Position of each agent's second parent, −1 if there is none, (n,)."""
     if "mate_id" not in agents.columns:
         return np.full(agents.height, -1, np.int64)
     ids, wanted = agents["agent_id"].to_numpy(), agents["mate_id"].fill_null(-1).to_numpy()

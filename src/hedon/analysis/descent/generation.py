@@ -1,4 +1,4 @@
-"""How long is a generation?"""
+"""Two measures of the generation time."""
 
 from typing import Any
 
@@ -10,18 +10,18 @@ from hedon.analysis.descent.genealogy import genealogy
 
 
 def generation_time(agents: pl.DataFrame, last_step: int) -> dict[str, Any]:
-    """Both measures of a generation.
+    """Computes both measures of the generation time.
 
     Args:
-        agents: table `agents` of one world, by agent_id.
-        last_step: up to which the records reach [step].
+        agents: Table `agents` of one world, by agent_id.
+        last_step: End of the records [step].
 
     Returns:
-        births, with a recorded parent; parent_age, the mean age of parents at the birth of a child [step], of both
-        where it has two: the generation time as demography has it, with its standard deviation parent_age_sd; reached,
-        the mean generation of the living at the end, or of those born last where nobody lives; line_time, steps of the
-        run per generation reached [step]: the generation time along the lines that last, shorter than parent_age where
-        they are those that breed early. None for what has no value.
+        births, with a recorded parent; parent_age, the mean age of parents at the birth of a child [step], both parents
+        if there are two: the generation time of demography, with its standard deviation parent_age_sd; reached, the
+        mean generation of the agents alive at the end, or of those born last if none is; line_time, steps of the run
+        per generation reached [step]: the generation time along surviving lines, shorter than parent_age if these are
+        the lines that breed early. None for undefined values.
     """
     ages = _parent_ages(agents)
     living = agents.filter(pl.col("death_step").is_null())
@@ -37,7 +37,7 @@ def generation_time(agents: pl.DataFrame, last_step: int) -> dict[str, Any]:
 
 
 def _parent_ages(agents: pl.DataFrame) -> NDArray[np.float64]:
-    """The age of each recorded parent at each birth, first parents before second ones [step]."""
+    """Ages of the recorded parents at each birth, first parents before second ones [step]."""
     trees = [genealogy(agents)]
     if "mate_id" in agents.columns:
         trees.append(genealogy(agents.with_columns(parent_id="mate_id")))

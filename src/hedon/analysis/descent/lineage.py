@@ -1,4 +1,4 @@
-"""Whose descendants are left? Coalescence, the lines of the survivors, and the weights along them."""
+"""Surviving descent: coalescence, lines of the survivors, and the weights along them."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,17 +11,17 @@ from hedon.analysis.descent.genealogy import Genealogy, ancestry, common_ancesto
 
 
 def coalescence(tree: Genealogy, step: int) -> dict[str, Any]:
-    """Common descent of those alive after a step.
+    """Common descent of the agents alive after a step.
 
     Args:
-        tree: the pedigree.
-        step: after which the living are taken [step].
+        tree: The pedigree.
+        step: Step after which the living agents are taken [step].
 
     Returns:
-        step; alive, agents alive; families, founders with living descendants, or alive themselves; largest, the share
-        of the living in the largest family; ancestor_birth, birth of the most recent common ancestor [step], NaN while
-        several families are left; depth, time since then [step], which then is longer than the run. NaN likewise where
-        nobody lives.
+        step; alive, agents alive; families, founders that are alive or have living descendants; largest, the share of
+        the living in the largest family; ancestor_birth, birth of the most recent common ancestor [step]; depth, time
+        since then [step]. The last two are NaN while several families are left, as the time exceeds the run, and all
+        three if no agent is alive.
     """
     alive = living_at(tree, step)
     ancestor = common_ancestor(tree, alive)
@@ -37,7 +37,7 @@ def coalescence(tree: Genealogy, step: int) -> dict[str, Any]:
 
 
 def survivors(tree: Genealogy) -> NDArray[np.int64]:
-    """Positions of those alive at the end of the records, (n,); of the one born last where nobody is."""
+    """Positions of the agents alive at the end of the records, (n,), or of the one born last if none is."""
     alive = np.flatnonzero(tree.alive)
     return alive if len(alive) or not tree.size else np.array([int(np.argmax(tree.birth))])
 
@@ -45,20 +45,19 @@ def survivors(tree: Genealogy) -> NDArray[np.int64]:
 def lines_through_time(
     tree: Genealogy, agents: pl.DataFrame, names: Sequence[str], steps: NDArray[np.int64]
 ) -> pl.DataFrame:
-    """The lines that lead to the survivors, back through time, beside all who lived then.
+    """The lines of descent of the survivors through time, with all agents alive at the same times.
 
-    An agent carries a line from its birth until its last child with a surviving line is born; a survivor
-    carries it on.
+    An agent carries a line from its birth until its last child with a surviving line is born; a survivor carries it on.
 
     Args:
-        tree: the pedigree.
-        agents: table `agents` of the same world, by agent_id.
-        names: genome columns.
-        steps: times, ascending [step], (times,).
+        tree: The pedigree.
+        agents: Table `agents` of the same world, by agent_id.
+        names: Genome columns.
+        steps: Times, ascending [step], (times,).
 
     Returns:
-        By step and weight: step, weight, lines (how many lead to the survivors), alive, line_mean (mean
-        weight over the lines), living_mean (mean over all alive). Null where there is nobody.
+        By step and weight: step, weight, lines (number of lines that lead to survivors), alive, line_mean (mean weight
+        over the lines), living_mean (mean over all alive). Means over no agents are null.
     """
     last = survivors(tree)
     marked = ancestry(tree, last)
@@ -85,7 +84,7 @@ def lines_through_time(
 def _sums(
     begin: NDArray[np.int64], end: NDArray[np.int64], value: NDArray[np.float64] | None, steps: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """Sums of values (or counts) over those with begin <= step < end, for each step."""
+    """Sums values, or counts, over the agents with begin <= step < end, for each step."""
     total = np.zeros(len(steps))
     for edge, sign in ((begin, 1.0), (end, -1.0)):
         order = np.argsort(edge, kind="stable")

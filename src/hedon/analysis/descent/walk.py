@@ -1,9 +1,9 @@
-"""What would drift alone have done? Neutral genes that mutate along the recorded pedigree.
+"""Drift: neutral genes that mutate along the recorded pedigree.
 
-Given who bore whom, a gene that nothing depends on is a random walk down the pedigree: founders draw it from the
-law of founders, and each birth adds a mutation. Walks along the very pedigree of a world show how far a weight can
-stray there without selection on it; they hold all that the pedigree says of drift: bottlenecks, families, and
-the hitchhiking with whatever else was selected.
+Given the pedigree, a gene without effects is a random walk down it: founders draw it from the law of founders, and each
+birth adds a mutation. Walks along a world's own pedigree show how far a weight can stray there without selection on it.
+They include everything in the pedigree that affects drift: bottlenecks, families, and hitchhiking with whatever else
+was selected.
 """
 
 from collections.abc import Iterator, Sequence
@@ -18,24 +18,24 @@ from hedon.config import Config
 from hedon.config.layout import Gene
 
 WALKS = 2000
-"""Per world; the smallest chance that they can show is 1 in 2000."""
+"""Number of walks per world; the smallest p-value that they can show is 1 in 2000."""
 _PIECE = 250  # walks at a time: 20 MB for 20,000 ancestors
 
 
 @dataclass(frozen=True)
 class MutationLaw:
-    """How a gene begins and changes: see `hedon.config.schema.evolution.GenomeConfig`.
+    """How founders draw a gene and how it mutates: see `hedon.config.schema.evolution.GenomeConfig`.
 
     Attributes:
-        mean, sd: of the founders' normal distribution.
-        noise: name of the law of the noise that each birth adds.
-        df: degrees of freedom of the noise, where its law has them.
-        probability: that a birth adds any.
-        scale: of the noise.
-        limit: weights are clipped to ± this.
-        tabulated: whether the noise is the same for all births of equal `birth_number`.
-        window: length of a window [step].
-        late: whether genomes are drawn at a window's end, when its number of births is known.
+        mean, sd: Mean and standard deviation of the founders' normal distribution.
+        noise: Name of the law of the mutations.
+        df: Degrees of freedom of that law, if it has them.
+        probability: Probability that a birth adds a mutation.
+        scale: Scale of the mutations.
+        limit: Weights are clipped to ± this.
+        tabulated: Whether all births with the same `birth_number` get the same mutation.
+        window: Length of a window [step].
+        late: Whether genomes are drawn at the end of a window, when its number of births is known.
     """
 
     mean: float
@@ -50,11 +50,11 @@ class MutationLaw:
     probability: float = 1.0
 
     def draw(self, rng: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.float64]:
-        """Draws noise of scale 1; 0 where a gene does not mutate.
+        """Draws mutations of scale 1; 0 if a gene does not mutate.
 
         Args:
-            rng: source of chance.
-            shape: of the result.
+            rng: Random number generator.
+            shape: Shape of the result.
 
         Returns:
             Independent values, of the given shape, float64.
@@ -71,11 +71,11 @@ class MutationLaw:
 
 
 def mutation_law(config: Config, gene: Gene) -> MutationLaw:
-    """The law of one gene of a run.
+    """Law of one gene in a run.
 
     Args:
-        config: of the run.
-        gene: one of a species' layout.
+        config: Settings of the run.
+        gene: A gene of a species' layout.
     """
     return MutationLaw(
         mean=gene.law.initial_mean,
@@ -94,16 +94,16 @@ def mutation_law(config: Config, gene: Gene) -> MutationLaw:
 def neutral_means(
     tree: Genealogy, sample: NDArray[np.int64], law: MutationLaw, rng: np.random.Generator, walks: int = WALKS
 ) -> NDArray[np.float64]:
-    """Means over a sample of agents of neutral genes that walked down the pedigree.
+    """Means, over a sample of agents, of neutral genes that walk down the pedigree.
 
-    Only the ancestors of the sample are walked.
+    Only the ancestors of the sample are simulated.
 
     Args:
-        tree: the pedigree, without gaps.
-        sample: positions of agents, (n,).
-        law: of founding and mutation.
-        rng: source of chance.
-        walks: how many genes, each independent of the others.
+        tree: The pedigree, without gaps.
+        sample: Positions of the agents, (n,).
+        law: Law of founders and mutations.
+        rng: Random number generator.
+        walks: Number of genes, independent of each other.
 
     Returns:
         Shape (walks,).
@@ -117,14 +117,14 @@ def neutral_means(
 def neutral_genes(
     tree: Genealogy, sample: NDArray[np.int64], law: MutationLaw, rng: np.random.Generator, walks: int
 ) -> NDArray[np.float32]:
-    """Neutral genes of a sample of agents that walked down the pedigree.
+    """Neutral genes of a sample of agents, from walks down the pedigree.
 
     Args:
-        tree: the pedigree, without gaps.
-        sample: positions of agents, (n,).
-        law: of founding and mutation.
-        rng: source of chance.
-        walks: how many genes, each independent of the others.
+        tree: The pedigree, without gaps.
+        sample: Positions of the agents, (n,).
+        law: Law of founders and mutations.
+        rng: Random number generator.
+        walks: Number of genes, independent of each other.
 
     Returns:
         Shape (n, walks).
@@ -137,14 +137,14 @@ def neutral_genes(
 def neutral_courses(
     tree: Genealogy, living: Sequence[NDArray[np.int64]], law: MutationLaw, rng: np.random.Generator, walks: int
 ) -> NDArray[np.float64]:
-    """Means over those who live at some times of neutral genes that walked down the pedigree.
+    """Means, over the agents alive at some times, of neutral genes that walk down the pedigree.
 
     Args:
-        tree: the pedigree, without gaps.
-        living: positions of the living at each time, (alive,) each; somebody at all of them.
-        law: of founding and mutation.
-        rng: source of chance.
-        walks: how many genes, each independent of the others.
+        tree: The pedigree, without gaps.
+        living: Positions of the living agents at each time, (alive,) each; never empty.
+        law: Law of founders and mutations.
+        rng: Random number generator.
+        walks: Number of genes, independent of each other.
 
     Returns:
         Shape (walks, times).
@@ -158,7 +158,7 @@ def neutral_courses(
 
 
 def _places(tree: Genealogy, nodes: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Where each agent stands among some; 0 for others."""
+    """Position of each agent in `nodes`; 0 for agents that are not in it."""
     place = np.zeros(tree.size, np.int64)
     place[nodes] = np.arange(len(nodes))
     return place
@@ -167,7 +167,7 @@ def _places(tree: Genealogy, nodes: NDArray[np.int64]) -> NDArray[np.int64]:
 def _walked(
     tree: Genealogy, nodes: NDArray[np.int64], law: MutationLaw, rng: np.random.Generator, walks: int
 ) -> Iterator[NDArray[np.float32]]:
-    """Genes of some agents, who hold all of their own ancestors, in pieces of some walks: (len(nodes), walks)."""
+    """Genes of `nodes`, which include all their own ancestors, several walks at a time: (len(nodes), walks)."""
     place = _places(tree, nodes)
     generation = depth(tree)[nodes]
     order = np.argsort(generation, kind="stable")
@@ -189,10 +189,10 @@ def _walked(
 def lineages(
     law: MutationLaw, mutations: int, worlds: int, count: int, rng: np.random.Generator, births: int = 1, genes: int = 1
 ) -> NDArray[np.float32]:
-    """Neutral genes down single lines of descent, apart from any pedigree.
+    """Neutral genes along single lines of descent, without a pedigree.
 
     Returns:
-        The genes of the founder and after each mutation, shape (mutations + 1, worlds, count, genes).
+        Genes of the founder and after each mutation, shape (mutations + 1, worlds, count, genes).
     """
     shape = (worlds, count, genes)
     values = np.empty((mutations + 1, *shape), np.float32)
@@ -208,15 +208,15 @@ def lineages(
 
 
 def is_mutated(tree: Genealogy, law: MutationLaw, last_step: int) -> NDArray[np.bool_]:
-    """Whether an agent's recorded genome is its parent's recorded one and a mutation; False for founders, shape (n,).
+    """Whether an agent's recorded genome is its parent's recorded one plus a mutation; False for founders, shape (n,).
 
-    Where genomes are drawn at a window's end, an agent that died in the window of its birth never had one of its own,
-    and one born in a window that goes on has none yet.
+    If genomes are drawn at the end of a window, an agent that died in the window of its birth never had a genome of its
+    own, and one born in an unfinished window has none yet.
 
     Args:
-        tree: the pedigree.
-        law: of founding and mutation.
-        last_step: the end of the records [step].
+        tree: The pedigree.
+        law: Law of founders and mutations.
+        last_step: End of the records [step].
     """
     born = tree.parent >= 0
     if not law.late:
@@ -227,24 +227,24 @@ def is_mutated(tree: Genealogy, law: MutationLaw, last_step: int) -> NDArray[np.
 
 
 def birth_number(tree: Genealogy, window: int, late: bool) -> NDArray[np.int64]:
-    """Numbers births so that those with equal tabulated noise have equal numbers.
+    """Numbers births so that births with the same tabulated noise share a number.
 
     Tabulated noise depends on a birth's index within its window of learning and on a number of births: that of the
-    window itself if genomes are drawn at its end (`late`), else that of the window before.
+    window itself if genomes are drawn at its end (`late`), else the previous window's.
 
     Args:
-        tree: the pedigree.
-        window: its length [step].
-        late: whether genomes are drawn at a window's end.
+        tree: The pedigree.
+        window: Length of a window [step].
+        late: Whether genomes are drawn at the end of a window.
 
     Returns:
         Numbers from 0 without gaps, in the order of (births, index); 0 for founders, shape (n,).
     """
     born = tree.parent >= 0
-    # Born in step s (counted from 0) has birth s + 1; ids, so positions, follow the order of birth.
+    # An agent born in step s (counted from 0) has birth s + 1; ids, and thus positions, follow the order of birth.
     of = np.where(born, (tree.birth - 1) // window, -1)
     index = pl.DataFrame({"window": of}).select(pl.int_range(pl.len()).over("window")).to_series().to_numpy()
-    births = np.bincount(of[born] + 1, minlength=2)  # of each window, after a 0 for the one before the first
+    births = np.bincount(of[born] + 1, minlength=2)  # per window, after a 0 for the one before the first
     known = births[of + late]
     number = np.zeros(tree.size, np.int64)
     pairs = np.stack([known, index], axis=1)[born]

@@ -1,1 +1,1 @@
-"""The evolved weights: where they stand, what selects them, and what drift alone explains."""
+"""Evolved weights: their values, the selection on them, and what drift can explain."""

@@ -1,9 +1,9 @@
-"""Where drift alone would have each gene: what pictures draw behind it, in gray.
+"""Drift bands: the range of each gene under drift, drawn in gray behind its course.
 
-Each gene has a control of its own: neutral genes with its founders and its mutations, walked down the pedigrees of the
-same worlds. The recorded neutral genes are no control for a gene of other founders or mutations: they begin elsewhere,
-or stray further or less far. Where no gene can walk down a pedigree (`walked_pedigree`), they are used for the genes
-whose law is their own, if there are enough of them; other genes have no control there.
+Each gene has its own control: neutral genes with its founders and mutations, walked down the pedigrees of the same
+worlds. The recorded neutral genes are no control for a gene with other founders or mutations, since they start
+elsewhere or stray more or less. If no gene can walk down a pedigree (`walked_pedigree`), the recorded genes serve as
+controls for genes with the same law, if there are enough of them; other genes then have no control.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ from hedon.analysis.world.population import history
 from hedon.analysis.world.record import WorldRecord, generator
 
 ENOUGH_GENES = 8
-"""Recorded neutral genes, over all worlds, from which on they are a control."""
+"""Minimum number of recorded neutral genes, over all worlds, that can serve as a control."""
 _RANGE = (0.025, 0.975)
 _WALKS = 100  # neutral genes per world for distributions over agents
 
@@ -29,7 +29,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class DriftBand:
-    """Where 95 % of neutral genes of one law are, as means over the living of a world.
+    """Range of 95 % of neutral genes with one law, as means over the living agents of a world.
 
     Attributes:
         step: Times from the first on, (times,) [step].
@@ -42,13 +42,13 @@ class DriftBand:
 
 
 def drift_bands(worlds: Sequence[WorldRecord]) -> dict[str, DriftBand]:
-    """The band of each gene of the worlds of one condition, all worlds together.
+    """Drift band of each gene in one condition, over all its worlds.
 
     Args:
-        worlds: At least one.
+        worlds: Worlds of the condition, at least one.
 
     Returns:
-        By genome column; genes that have no control are missing.
+        By genome column; genes without a control are missing.
     """
     if any(walked_pedigree(world) is None for world in worlds):
         return _recorded_bands(worlds)
@@ -67,15 +67,15 @@ def drift_bands(worlds: Sequence[WorldRecord]) -> dict[str, DriftBand]:
 
 
 def drift_genes(worlds: Sequence[WorldRecord], agents: Sequence[pl.DataFrame]) -> dict[str, Floats]:
-    """What some agents would have of each gene if it had drifted: many draws for each of them.
+    """Values of each gene that some agents would have after drift: many draws per agent.
 
     Args:
-        worlds: Of one condition.
-        agents: For each of them, rows of its own table `agents`.
+        worlds: Worlds of one condition.
+        agents: For each world, rows of its table `agents`.
 
     Returns:
-        By genome column, values of all these agents together, (draws,), agents with equal weight; genes that have no
-        control are missing.
+        By genome column, values of all agents together, (draws,), each agent with equal weight; genes without a control
+        are missing.
     """
     trees = [walked_pedigree(world) for world in worlds]
     drawn: dict[MutationLaw, list[Floats]] = {}
@@ -96,7 +96,7 @@ def _laws(world: WorldRecord) -> dict[str, MutationLaw]:
 
 
 def _controls(world: WorldRecord) -> dict[str, list[str]]:
-    """For each gene the recorded neutral genes of its law, itself among them if it is one."""
+    """For each gene, the recorded neutral genes with its law; a neutral gene includes itself."""
     alike = like_neutral(world)
     return {name: [*others, *([name] if name in world.neutral_names else [])] for name, others in alike.items()}
 

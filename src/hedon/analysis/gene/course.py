@@ -1,4 +1,4 @@
-"""The course of a world's mean weights, beside those of neutral genes of the same pedigree."""
+"""Courses of a world's mean weights, with those of neutral genes on the same pedigree."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,20 +13,20 @@ from hedon.analysis.gene.pedigree import walked_pedigree
 from hedon.analysis.world.record import WorldRecord, generator
 
 WALKS = 500
-"""Neutral courses per world: the smallest chance that they tell from zero is 1 in 500."""
-_INTERVALS = 100  # into which the longest world of a condition is cut
+"""Neutral courses per world; the smallest p-value that they can show is 1 in 500."""
+_INTERVALS = 100  # number of intervals in the longest world of a condition
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class WorldCourse:
-    """Mean weights over the living of one world, at equal intervals from its beginning on.
+    """Mean weights over the living agents of one world, at equal intervals from its start.
 
     Attributes:
-        generations: mean generation of the living at the end, less that of those at the beginning.
-        mean: per genome column, shape (times,).
-        neutral: per genome column, courses of neutral genes that begin as it does, shape (walks, times).
+        generations: Mean generation of the agents alive at the end, minus that at the start.
+        mean: Per genome column, shape (times,).
+        neutral: Per genome column, courses of neutral genes that start as it does, shape (walks, times).
     """
 
     generations: float
@@ -35,29 +35,29 @@ class WorldCourse:
 
     @property
     def intervals(self) -> int:
-        """Between the values of a course."""
+        """Number of intervals between the values of a course."""
         return len(next(iter(self.mean.values()))) - 1
 
 
 def world_course(
     world: WorldRecord, interval: float, rng: np.random.Generator, walks: int = WALKS
 ) -> WorldCourse | None:
-    """The courses of one world.
+    """Courses of one world.
 
     Args:
-        world: its records.
-        interval: between two values [step].
-        rng: source of chance.
-        walks: neutral genes per course.
+        world: Records of the world.
+        interval: Time between two values [step].
+        rng: Random number generator.
+        walks: Number of neutral genes per course.
 
     Returns:
-        None where no neutral gene can walk down the pedigree (see `walked_pedigree`), or nobody lives at the end of
+        None if no neutral gene can walk down the pedigree (see `walked_pedigree`), or no agent is alive at the end of
         the first interval.
     """
     tree = walked_pedigree(world)
     if tree is None:
         return None
-    # A small excess, or rounding could cost the last time.
+    # The small excess keeps rounding from dropping the last time.
     times = np.arange(0.0, world.last_step * (1.0 + 1e-9), interval).astype(np.int64)
     living = [living_at(tree, int(time)) for time in times]
     ends = next((i for i, positions in enumerate(living) if not len(positions)), len(living))
@@ -87,10 +87,10 @@ def standard_interval(worlds: Sequence[WorldRecord]) -> float:
 
 
 def standard_courses(worlds: Sequence[WorldRecord]) -> list[WorldCourse | None]:
-    """The courses of the worlds of one condition, at the same times; made once, since walks take long.
+    """Courses of the worlds of one condition, at the same times; cached, since walks take long.
 
     Returns:
-        For each world what `world_course` gives with the standard interval and the world's own source of chance.
+        For each world, the result of `world_course` with the standard interval and the world's own random numbers.
     """
     interval = standard_interval(worlds)
     for world in worlds:

@@ -1,9 +1,9 @@
-"""Did a weight go further, or more in one direction, than drift alone would have carried it?
+"""Tests whether a weight went further, or more in one direction, than drift alone would have carried it.
 
-Two controls. The *walk*: in each world, the mean weight of those alive at the end is compared with neutral genes that
-mutate along the same pedigree (`descent.walk`), and its score among them is tested as `statistic.drift` says. The
-*marker*: whether a weight strays further from its start than the recorded neutral genes of its law do in the same
-worlds: under drift, it is as likely to be the first of them as the last.
+There are two controls. The *walk*: in each world, the mean weight of the agents alive at the end is compared with
+neutral genes that mutate along the same pedigree (`descent.walk`), and `statistic.drift` tests its score among them.
+The *marker*: whether a weight strays further from its start than the recorded neutral genes with its law in the same
+worlds; under drift, it is as likely to rank first among them as last.
 """
 
 import math
@@ -29,16 +29,16 @@ NAN = math.nan
 
 @dataclass(frozen=True)
 class WorldDrift:
-    """One weight of one world against neutral walks.
+    """One weight of one world compared with neutral walks.
 
     Attributes:
-        weight: genome column.
-        start: mean of the founders' law.
-        mean: of the agents that are compared.
-        null_low, null_median, null_high: the walks' median, and the bounds that 95 % of them lie between.
-        score: standard normal score of the mean's rank among the walks.
-        p: two-sided chance of such a rank under drift.
-        generation: mean generation of the agents that are compared.
+        weight: Genome column.
+        start: Mean of the founders' law.
+        mean: Mean over the compared agents.
+        null_low, null_median, null_high: Median of the walks, and the bounds of 95 % of them.
+        score: Standard normal score of the mean's rank among the walks.
+        p: Two-sided probability of such a rank under drift.
+        generation: Mean generation of the compared agents.
     """
 
     weight: str
@@ -57,16 +57,16 @@ _KNOWN: WeakKeyDictionary[WorldRecord, dict[int | None, list[WorldDrift]]] = Wea
 
 @dataclass(frozen=True)
 class DriftTest(ScoreTest):
-    """One weight of one condition against one control: walks, as its scores tell, or "marker".
+    """One weight of one condition tested against one control: walks, by its scores among them, or "marker".
 
     For "marker" the effect is the mean of |displacement of the weight| − |displacement of the neutral genes|, in units
-    of the weight, and p is that of the sum over worlds of its rank among them. Only neutral genes with the weight's
-    founders and mutations count; without any there is no such test. p_holm is corrected for all reward weights and all
-    tests against walks, or for all reward weights against neutral genes; NaN for neutral genes, which are shown as a
-    check of the method.
+    of the weight, and p refers to the sum over worlds of its rank among them. Only neutral genes with the weight's
+    founders and mutations count; without any, this test is omitted. p_holm is corrected for all reward weights and all
+    tests against walks, or for all reward weights against neutral genes; it is NaN for neutral genes, which are shown
+    as a check of the method.
 
     Attributes:
-        weight: genome column.
+        weight: Genome column.
     """
 
     weight: str = ""
@@ -78,8 +78,7 @@ def world_drift(
     """Compares each weight of a world with neutral walks along its pedigree.
 
     Returns:
-        A result for each weight. An empty list where no neutral gene can walk down the pedigree (see
-        `walked_pedigree`).
+        A result for each weight; empty if no neutral gene can walk down the pedigree (see `walked_pedigree`).
     """
     tree = walked_pedigree(world)
     sample = np.array([], np.int64) if tree is None else _sample(tree, world, last)
@@ -99,11 +98,11 @@ def world_drift(
 
 
 def standard_drift(world: WorldRecord, last: int | None = None) -> list[WorldDrift]:
-    """`world_drift` with the world's own source of chance; made once for each world, since walks take long.
+    """`world_drift` with the world's own random numbers; cached for each world, since walks take long.
 
     Args:
-        world: a world with its agents.
-        last: which agents are compared, as in `world_drift`.
+        world: A world with its agents.
+        last: Agents to compare, as in `world_drift`.
     """
     known = _KNOWN.setdefault(world, {})
     if last not in known:
@@ -112,7 +111,7 @@ def standard_drift(world: WorldRecord, last: int | None = None) -> list[WorldDri
 
 
 def _sample(tree: Genealogy, world: WorldRecord, last: int | None) -> NDArray[np.int64]:
-    """Positions of the agents that are compared."""
+    """Positions of the agents to compare."""
     if last is None:
         return living_at(tree, last_lived_step(world.population))
     return np.lexsort((np.arange(tree.size), tree.birth))[-last:]
@@ -125,14 +124,14 @@ def drift_tests(
     alike: Mapping[str, Sequence[str]],
     rng: np.random.Generator,
 ) -> list[DriftTest]:
-    """The tests of one condition.
+    """Tests of one condition.
 
     Args:
-        worlds: of `world_drift`, one per world; empty ones are left out.
-        reward_names: genome columns that enter the reward.
-        neutral_names: the neutral genes.
-        alike: for each reward weight, the neutral genes of its law, as `like_neutral` gives them.
-        rng: source of chance for ties.
+        worlds: Results of `world_drift`, one list per world; empty ones are skipped.
+        reward_names: Genome columns that enter the reward.
+        neutral_names: Columns of the neutral genes.
+        alike: For each reward weight, the neutral genes with its law, from `like_neutral`.
+        rng: Random number generator that breaks ties.
     """
     known = [{result.weight: result for result in world} for world in worlds if world]
     walked = [test for name in (*reward_names, *neutral_names) for test in _against_walks(name, known)]

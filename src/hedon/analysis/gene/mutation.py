@@ -1,9 +1,9 @@
-"""Each birth is an experiment: a child's own mutation is random. Does it change the child's life?
+"""Effects of mutations on life: each birth is an experiment, because a child's own mutation is random.
 
-Mutations are drawn after a parent has bred, so among the children of one parent they depend on nothing else: comparing
-siblings tells what a gene causes, whatever place, energy and ancestors their parent had. What is regressed is the
-deviation of a child's outcome from the mean of its siblings on that of its mutation. Mutations are Cauchy, so a few
-are enormous: they are clipped, or replaced by the normal scores of their ranks.
+Mutations are drawn after a parent has bred, so among the children of one parent they are independent of everything
+else. Comparing siblings therefore shows what a gene causes, whatever place, energy and ancestors their parent had. The
+regression is of the deviation of a child's outcome from its siblings' mean on the same deviation of its mutation.
+Mutations are Cauchy, so a few are enormous: they are clipped, or replaced by the normal scores of their ranks.
 """
 
 from collections.abc import Sequence
@@ -25,26 +25,26 @@ from hedon.statistic.law import normal_above
 OUTCOMES = ("food", "lifespan", "children")
 SCALES = ("clipped", "rank")
 CLIP = 1.0
-"""Largest mutation that counts as it is: with the default scale of 0.02 one in eighty is larger."""
+"""Largest mutation that is used unclipped; with the default scale of 0.02, one in eighty is larger."""
 KNOWN = 0.9
-"""Part of the run in which a child must be born: of those born later little is known. Whether a child is dead must not
-decide, since that would choose by the outcome."""
+"""Initial part of the run in which a child must be born, since little is known of those born later. Being dead must not
+be the criterion, as that would select by the outcome."""
 YOUNG = 1024
-"""Fewest steps over which food per step is counted [step]: a meal in a life of three steps tells nothing."""
+"""Minimum number of steps for food per step [step]; a meal in a life of three steps is uninformative."""
 FEWEST = 30
-"""Parents with several children below which nothing is estimated."""
+"""Minimum number of parents with several children for an estimate."""
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Births:
-    """Children with their own mutations and what became of them.
+    """Children with their own mutations and their outcomes.
 
     Attributes:
-        change: child's genome minus parent's, (n, genes).
-        outcome: energy eaten per step, lifespan or age so far [step], and children, (n, 3).
-        parent: one number per parent, (n,).
+        change: Child's genome minus parent's, (n, genes).
+        outcome: Energy eaten per step, lifespan or age so far [step], and children, (n, 3).
+        parent: Number that identifies the parent, (n,).
     """
 
     change: Floats
@@ -53,7 +53,7 @@ class Births:
 
 
 def births_of(world: WorldRecord) -> Births:
-    """The children of one world whose parents are recorded, born in the first `KNOWN` of the run."""
+    """Children of one world with recorded parents, born in the first `KNOWN` of the run."""
     agents = world.agents
     tree = genealogy(agents)
     lived, _ = durations(agents, world.last_step)
@@ -67,7 +67,7 @@ def births_of(world: WorldRecord) -> Births:
 
 
 def pool(births: Sequence[Births]) -> Births:
-    """The births of several worlds, whose parents differ."""
+    """Combines the births of several worlds, keeping their parents distinct."""
     begin = np.cumsum([0, *(int(each.parent.max(initial=-1)) + 1 for each in births)])
     return Births(
         np.concatenate([each.change for each in births]),
@@ -79,14 +79,13 @@ def pool(births: Sequence[Births]) -> Births:
 def mutation_effects(
     births: Births, names: Sequence[str], rng: np.random.Generator, replicates: int = REPLICATES
 ) -> list[dict[str, Any]]:
-    """The effects of each gene on each outcome, by both scales.
+    """Effects of each gene on each outcome, on both scales.
 
     Returns:
-        A row for each scale of `SCALES`, outcome of `OUTCOMES` and weight (genome column): births and parents that
-        enter, children of parents with several; effect, the change of the outcome over its mean, per unit of the
-        weight, or per standard deviation of the rank; low and high, bounds of its 95 % interval, by a bootstrap that
-        draws parents as wholes; p, two-sided, by the bootstrap's standard error. No rows where too few parents have
-        several children.
+        A row for each scale of `SCALES`, outcome of `OUTCOMES` and weight (genome column): births and parents included,
+        only parents with several children; effect, the change of the outcome relative to its mean, per unit of the
+        weight, or per standard deviation of the rank; low and high, bounds of its 95 % interval, from a bootstrap over
+        parents; p, two-sided, from the bootstrap's standard error. No rows if too few parents have several children.
     """
     _, parent, count = np.unique(births.parent, return_inverse=True, return_counts=True)
     several = count[parent] > 1
@@ -100,7 +99,7 @@ def mutation_effects(
         x = _among_siblings(_scaled(births.change[several], scale), parent)
         columns = [*(x[:, g] * y[:, k] for g in range(x.shape[1]) for k in range(y.shape[1])), *(x**2).T]
         features = np.stack([np.bincount(parent, column) for column in columns], axis=1)
-        unit = np.maximum(features.std(axis=0), 1e-300)  # sums are made in single precision
+        unit = np.maximum(features.std(axis=0), 1e-300)  # sums are in single precision
         drawn = resampled_sums(features / unit, np.arange(len(features)), rng, replicates)
         sums = np.concatenate([(features / unit).sum(axis=0, keepdims=True), drawn]) * unit
         genes, outcomes = x.shape[1], y.shape[1]

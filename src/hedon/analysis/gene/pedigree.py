@@ -1,4 +1,4 @@
-"""What shows drift: pedigrees down which neutral genes can walk, and recorded neutral genes of the same law."""
+"""Controls for drift: pedigrees that neutral genes can walk down, and recorded neutral genes with the same law."""
 
 from collections.abc import Mapping
 
@@ -7,12 +7,12 @@ from hedon.analysis.world.record import WorldRecord, shares_noise
 
 
 def walked_pedigree(world: WorldRecord) -> Genealogy | None:
-    """The pedigree of a world, where neutral genes that walk down it show what drift does.
+    """Pedigree of a world, if neutral genes that walk down it show the effect of drift.
 
     Returns:
-        None where there is no pedigree, or one with gaps, whose walks would have no beginning; where the founders come
-        from a table, whose law the walks do not know; where children have two parents; and where noise is fixed by the
-        number of a birth among those of several species.
+        None in these cases: there is no pedigree, or it has gaps, so that walks would have no start; the founders come
+        from a table, whose law is unknown; children have two parents; or noise depends on a birth's number among births
+        of several species.
     """
     if world.config.world.founders or world.own.birth.mating == "pairs" or shares_noise(world):
         return None
@@ -21,10 +21,10 @@ def walked_pedigree(world: WorldRecord) -> Genealogy | None:
 
 
 def like_neutral(world: WorldRecord) -> Mapping[str, list[str]]:
-    """For each gene the recorded neutral genes that begin and mutate like it; none if a table gives the founders.
+    """For each gene, the recorded neutral genes that start and mutate like it; none if a table gives the founders.
 
     Returns:
-        By genome column; a neutral gene is not among its own.
+        By genome column; a neutral gene does not include itself.
     """
     if world.config.world.founders:
         return {name: [] for name in world.weight_names}

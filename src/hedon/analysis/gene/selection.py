@@ -1,4 +1,4 @@
-"""Which weights does selection favor? Differentials, gradients and curvature in a birth cohort, by two fitnesses."""
+"""Selection on weights: differentials, gradients and curvature in a birth cohort, for two measures of fitness."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -27,15 +27,15 @@ def selection(cohort: pl.DataFrame, names: Sequence[str], last_step: int) -> lis
     """Selection on each weight within one birth cohort.
 
     Args:
-        cohort: rows of the table `agents` of one world.
-        names: genome columns; all of them enter the multiple regression.
-        last_step: up to which the records reach [step].
+        cohort: Rows of the table `agents` of one world.
+        names: Genome columns; all of them enter the multiple regression.
+        last_step: End of the records [step].
 
     Returns:
         A row by fitness ("children" or "lifespan") and weight (genome column): agents, in the cohort; complete, the
-        share of them that has died: below 1, fitness is cut short by the end of the records; mean_fitness, children or
-        steps; sd of the weight among contemporaries; differential s, in units of the weight; intensity s/σ; gradient β,
-        per unit of the weight; standard_gradient β·σ. NaN where it cannot be estimated.
+        share of them that has died: if it is below 1, the end of the records truncates fitness; mean_fitness, children
+        or steps; sd of the weight among contemporaries; differential s, in units of the weight; intensity s/σ; gradient
+        β, per unit of the weight; standard_gradient β·σ. NaN for values that cannot be estimated.
     """
     traits = _Traits(cohort, names, last_step)
     tables = np.full((len(FITNESS), len(STATISTICS), len(names)), np.nan)
@@ -52,12 +52,12 @@ def selection(cohort: pl.DataFrame, names: Sequence[str], last_step: int) -> lis
 
 
 def curvature(cohort: pl.DataFrame, names: Sequence[str], last_step: int) -> list[dict[str, Any]]:
-    """Curvature along each weight within one birth cohort, all other weights held fixed by their linear parts.
+    """Curvature along each weight within one birth cohort, with linear terms for all other weights.
 
     Args:
-        cohort: rows of the table `agents` of one world.
-        names: genome columns.
-        last_step: the end of the records [step].
+        cohort: Rows of the table `agents` of one world.
+        names: Genome columns.
+        last_step: End of the records [step].
 
     Returns:
         A row by fitness and weight, with agents and complete as for `selection`: curvature γ·σ²; NaN with fewer agents
@@ -75,7 +75,7 @@ def curvature(cohort: pl.DataFrame, names: Sequence[str], last_step: int) -> lis
 
 
 class _Traits:
-    """The weights of a cohort, as deviations from contemporaries, with the agents' fitness."""
+    """Weights of a cohort, as deviations from contemporaries, with the agents' fitness."""
 
     def __init__(self, cohort: pl.DataFrame, names: Sequence[str], last_step: int) -> None:
         self._cohort = cohort.sort("birth_step", "agent_id")
@@ -86,15 +86,15 @@ class _Traits:
         self.z = within_strata(self._cohort.select(names).to_numpy().astype(np.float64))
 
     def head(self, fitness: str, weight: str) -> dict[str, Any]:
-        """The first columns of a row."""
+        """First columns of a row."""
         return {"fitness": fitness, "weight": weight, "agents": self.count, "complete": self.complete}
 
     def relative_fitness(self) -> Floats:
-        """Against contemporaries, a column per measure of fitness."""
+        """Fitness relative to contemporaries, a column per measure of fitness."""
         return np.stack([relative_fitness(self._fitness[name]) for name in FITNESS], axis=1)
 
     def by_fitness(self, tables: Floats) -> Iterator[tuple[str, float, Floats]]:
-        """Each measure of fitness with its mean and its table, which is NaN where nobody has any."""
+        """Yields each measure of fitness with its mean and its table, which is NaN if the mean is 0 or unknown."""
         for name, table in zip(FITNESS, tables, strict=True):
             mean = float(self._fitness[name].mean()) if self.count else float("nan")
             yield name, mean, table if mean > 0 else np.full_like(table, np.nan)

@@ -1,4 +1,4 @@
-"""Which rewards evolved? The mean weights of those who live at the end, and of the paper's 5000 agents born last."""
+"""Evolved rewards: mean weights of the agents alive at the end, and of the 5000 agents born last, as in the paper."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ Spread = dict[str, float | None]
 
 
 def last_lived_step(population: pl.DataFrame) -> int:
-    """The end of the records of one world, or the last of their rows at which somebody lived [step].
+    """Last recorded step of one world at which an agent was alive, by the rows of its population [step].
 
     Raises:
         ArgumentError: The rows are of several species.
@@ -25,14 +25,14 @@ def last_lived_step(population: pl.DataFrame) -> int:
 
 
 def last_living(agents: pl.DataFrame, population: pl.DataFrame) -> pl.DataFrame:
-    """The agents of one world whose weights tell what evolved: those who live at the end of its records.
+    """The agents of one world whose weights show what evolved: those alive at the end of its records.
 
-    Of a world that died out, those who lived at the last row of its population at which anybody did, so that these are
-    the agents at whom a curve of the living ends.
+    In an extinct world, these are the agents of the last row of its population with any alive, where a curve of the
+    living ends.
 
     Args:
         agents: Rows of the table `agents` of one world and species.
-        population: Its rows of the table `population`.
+        population: Rows of its table `population`.
 
     Returns:
         The rows of these agents, in the order of `agents`.
@@ -47,10 +47,10 @@ def last_living(agents: pl.DataFrame, population: pl.DataFrame) -> pl.DataFrame:
 
 
 def weight_spreads(agents: pl.DataFrame, names: Sequence[str]) -> dict[str, Spread]:
-    """How weights are spread among some agents.
+    """Mean and spread of weights among some agents.
 
     Returns:
-        By name: mean, None where there are no agents, and sd, None where there are fewer than two.
+        By name: mean, None without agents, and sd, None with fewer than two.
     """
     return {name: _spread(agents[name]) for name in names}
 
@@ -59,23 +59,23 @@ def end_mean(weight: str, world: WorldRecord) -> float | None:
     """Mean of a weight over `last_living`; None without agents.
 
     Args:
-        weight: A genome column.
+        weight: Genome column.
         world: A world with its agents.
     """
     return _spread(last_living(world.agents, world.population)[weight])["mean"]
 
 
 def last_agents(agents: pl.DataFrame, count: int = LAST_AGENTS) -> pl.DataFrame:
-    """The agents of each world that were born last, dead or alive, by world and birth: the paper's measure.
+    """Agents of each world that were born last, dead or alive, by world and birth: the paper's measure.
 
-    In a short world these are all that ever lived, its founders among them; see `last_living`.
+    In a short world these are all agents that ever lived, including its founders; see `last_living`.
 
     Args:
-        agents: table `agents`.
-        count: per world; all where there are fewer.
+        agents: Table `agents`.
+        count: Number of agents per world; all if there are fewer.
 
     Raises:
-        ArgumentError: the rows are of several species.
+        ArgumentError: The rows are of several species.
     """
     require_one_species(agents)
     return agents.sort("world", "birth_step", "agent_id").group_by("world", maintain_order=True).tail(count)
@@ -85,8 +85,8 @@ def last_mean(weight: str, world: WorldRecord) -> float | None:
     """Mean of a weight over the 5000 agents of a world that were born last; None without agents.
 
     Args:
-        weight: a genome column.
-        world: a world with its agents.
+        weight: Genome column.
+        world: A world with its agents.
     """
     return _spread(last_agents(world.agents)[weight])["mean"]
 

@@ -1,1 +1,1 @@
-"""The questions that `hedon analyze` answers: each topic turns the worlds of some runs into tables."""
+"""Topics of `hedon analyze`: each turns the worlds of some runs into tables."""

@@ -1,4 +1,4 @@
-"""What topics share that ask the same of each birth cohort of each world."""
+"""Common parts of topics that analyze each birth cohort of each world."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
@@ -9,15 +9,15 @@ from hedon.analysis.agent.cohort import COMPLETE, window_bounds, with_cohorts
 from hedon.analysis.world.record import Conditions, WorldRecord, labels
 from hedon.text import count
 
-_PER_WINDOW = 200  # agents that a window of births should hold
-_WINDOWS = 10  # of a run, at most
+_PER_WINDOW = 200  # minimum agents per window of births
+_WINDOWS = 10  # maximum windows per run
 
 
 def window_count(worlds: Sequence[WorldRecord]) -> int:
-    """Into how many windows by birth the runs of one condition are cut: ten, or fewer for small records.
+    """Number of windows by birth for the runs of one condition: ten, or fewer for small records.
 
-    Worlds that died out do not count while others live on: one early death would leave a few long windows, none of
-    which is complete in a living world.
+    Extinct worlds are ignored while others are alive: one early death would leave a few long windows, none of which is
+    complete in a living world.
     """
     living = [world for world in worlds if world.extinct_step is None]
     smallest = min((world.born.height for world in living or worlds), default=0)
@@ -43,12 +43,12 @@ def cohort_rows(
 
 
 def complete_cohorts(rows: pl.DataFrame) -> pl.DataFrame:
-    """The rows of cohorts of which nearly all have died, so that their lives are known."""
+    """Rows of cohorts in which nearly all agents have died, so that their lives are known."""
     return rows if rows.is_empty() else rows.filter(pl.col("complete") >= COMPLETE)
 
 
 def incomplete_note(rows: pl.DataFrame) -> str:
-    """How many worlds have no complete cohort, as a sentence for a note; empty if all have one."""
+    """A sentence on the number of worlds without a complete cohort, for a note; empty if all have one."""
     if rows.is_empty():
         return ""
     whole = rows.group_by("condition", "seed").agg(pl.col("complete").max())["complete"] >= COMPLETE

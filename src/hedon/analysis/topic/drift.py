@@ -1,4 +1,4 @@
-"""Topics about drift: weights against neutral genes, mean reversion along a run, modes over worlds."""
+"""Topics on drift: weights against neutral genes, mean reversion along a run, modes over worlds."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -68,7 +68,7 @@ def reversion_topic(conditions: Conditions) -> list[ResultTable]:
 
 
 def mode(conditions: Conditions) -> list[ResultTable]:
-    """One mode or two, over worlds."""
+    """Test for one mode or two, over worlds."""
     rows = []
     for condition, worlds in conditions.items():
         for name in worlds[0].weight_names:

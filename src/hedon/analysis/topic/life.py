@@ -1,4 +1,4 @@
-"""Topics about single lives: lifetime, food, reproduction, generation, energy."""
+"""Topics on single lives: lifetime, food, reproduction, generation, energy."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -18,11 +18,11 @@ from hedon.analysis.world.record import Conditions, WorldRecord, labels
 from hedon.statistic.interval import AMOUNT, ANY, SHARE, Interval, mean_interval
 from hedon.statistic.survival import SurvivalCurve, exposure_mean, restricted_mean, survival_curve
 
-_AGES = 200  # points of a survival curve in the records of the analysis
+_AGES = 200  # points of a survival curve in the written tables
 
 
 def lifetime(conditions: Conditions) -> list[ResultTable]:
-    """Lifetimes, with those who still live counted as censored."""
+    """Lifetimes; agents still alive count as censored."""
     rows, curves, medians = [], [], []
     for condition, worlds in conditions.items():
         lives = [durations(world.born, world.last_step) for world in worlds]
@@ -56,7 +56,7 @@ def lifetime(conditions: Conditions) -> list[ResultTable]:
 
 
 def food(conditions: Conditions) -> list[ResultTable]:
-    """Food, and agents that are eaten, by both rules of averaging: of each world what its agents may eat."""
+    """Foods and agents eaten, by both rules of averaging, for everything that a world's agents may eat."""
     rows = [
         labels(world)
         | {
@@ -151,9 +151,9 @@ def energy(conditions: Conditions) -> list[ResultTable]:
 def _median_rows(
     condition: str, lives: Sequence[tuple[np.ndarray, np.ndarray]], curves: Sequence[SurvivalCurve]
 ) -> list[dict[str, Any]]:
-    """The median lifetime over worlds, or of all worlds together if some have none yet; no row if it is unknown too.
+    """Median lifetime over worlds, or of all worlds pooled if some have none yet; no row if that is unknown too.
 
-    A mean over the worlds that have a median would leave out those with long lives.
+    A mean over only the worlds with a median would leave out those with long lives.
     """
     medians = [curve.quantile()[0] for curve in curves]
     head = {"condition": condition}
@@ -167,9 +167,9 @@ def _median_rows(
 
 
 def _common_age(worlds: Sequence[WorldRecord], curves: Sequence[SurvivalCurve]) -> float:
-    """The age up to which all these curves are read [step]; 0 where nobody died.
+    """Age up to which all these curves are used [step]; 0 if no agent died.
 
-    Where all have died out no life is censored, so such worlds set no limit while others live.
+    In an extinct world no life is censored, so it sets no limit while others are alive.
     """
     ages = {world.seed: curve.trusted_age() for world, curve in zip(worlds, curves, strict=True)}
     living = [ages[world.seed] for world in worlds if world.extinct_step is None]

@@ -1,4 +1,4 @@
-"""Topics about genomes and what selects them, by birth cohort: distributions, gradients, curvature, Price's terms."""
+"""Topics on genomes and selection by birth cohort: distributions, gradients, curvature, terms of Price's equation."""
 
 import numpy as np
 import polars as pl
@@ -127,7 +127,7 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
 
 
 def _with_excess(by_world: pl.DataFrame, conditions: Conditions) -> pl.DataFrame:
-    """Adds what a weight's curvature exceeds the mean of the neutral genes of its world by, itself not among them."""
+    """Adds the excess of a weight's curvature over the mean of its world's neutral genes, other than itself."""
     neutral = {name for worlds in conditions.values() for world in worlds for name in world.neutral_names}
     of_marker = pl.col("curvature").filter(pl.col("weight").is_in(sorted(neutral)))
     group = ("condition", "seed", "fitness")

@@ -1,4 +1,4 @@
-"""A topic about causes: mutation as a treatment that births hand out at random."""
+"""A topic on causes: mutation as a treatment that births assign at random."""
 
 import itertools
 
@@ -10,7 +10,7 @@ from hedon.analysis.world.record import SEED, Conditions
 
 
 def mutation_topic(conditions: Conditions) -> list[ResultTable]:
-    """What a child's own mutation does to its life, among siblings."""
+    """Effects of a child's own mutation on its life, among siblings."""
     rows, shown = [], []
     for condition, worlds in conditions.items():
         rng = np.random.default_rng([SEED, len(worlds)])

@@ -1,4 +1,4 @@
-"""Topics about whole worlds: genealogy and regimes."""
+"""Topics on whole worlds: genealogy and regimes."""
 
 import numpy as np
 import polars as pl
@@ -10,8 +10,8 @@ from hedon.analysis.world.record import Conditions, labels
 from hedon.analysis.world.regime import REGIMES, regimes
 from hedon.statistic.interval import AMOUNT, SHARE
 
-_TIMES = 20  # at which the coalescence is computed
-_LINE_TIMES = 100  # at which lines are counted
+_TIMES = 20  # number of times for the coalescence
+_LINE_TIMES = 100  # number of times for counts of lines
 
 
 def genealogy_topic(conditions: Conditions) -> list[ResultTable]:

@@ -1,1 +1,1 @@
-"""Whole worlds: their records, numbers, energy, regimes and ends."""
+"""Whole worlds: their records, numbers, energy, regimes and extinctions."""

@@ -1,4 +1,4 @@
-"""Where does energy come from, and where does it go?"""
+"""Energy budgets: where energy comes from and where it goes."""
 
 import polars as pl
 
@@ -8,18 +8,18 @@ _FLOWS = ("eaten", "basic", "action", "forgiven", "capped", "lost", "shared", "h
 
 
 def energy_budget(population: pl.DataFrame) -> dict[str, float] | None:
-    """The budget over the given intervals, per 1000 steps lived by an agent.
+    """Energy budget over the given intervals, per 1000 agent steps.
 
     Returns:
-        eaten, taken up with food, where poison counts negative; basic and action, charged for living and for action;
-        forgiven, charged but not paid, because energy cannot fall below 0; capped, eaten but destroyed at the capacity
-        for energy; lost, held by those who died; shared, given by parents to children, which stays within the world;
-        hunted, gained by eating agents, where some do; damage, charged for touching obstacles, where there are any;
-        forgiven_share, of what was charged, the share that could not be paid: how hungry the world is. None where
-        nobody lived or nothing was charged.
+        eaten, gained from food, with poison as negative; basic and action, charged for living and for action; forgiven,
+        charged but not paid, because energy cannot fall below 0; capped, eaten but lost at the capacity for energy;
+        lost, held by agents that died; shared, given by parents to children, which stays within the world; hunted,
+        gained by eating agents, if any do; damage, charged for touching obstacles, if there are any; forgiven_share,
+        the share of the charges that could not be paid: how hungry the world is. None if no steps were lived or nothing
+        was charged.
 
     Raises:
-        ArgumentError: the rows are of several species.
+        ArgumentError: The rows are of several species.
     """
     require_one_species(population)
     lived = int(population["agent_steps"].sum())

@@ -1,4 +1,4 @@
-"""Which share of some worlds dies out, or loses a species?"""
+"""The share of worlds that die out or lose a species."""
 
 from collections.abc import Sequence
 
@@ -9,24 +9,24 @@ from hedon.statistic.extinction import ExtinctShare, extinct_share
 
 
 def world_extinction(worlds: Sequence[WorldRecord], until: float) -> ExtinctShare:
-    """The share of worlds extinct by a step [step], over worlds of any length.
+    """Share of worlds extinct by a step [step], over worlds of any length.
 
     Args:
-        worlds: with their manifests' ends.
-        until: the step by which a world counts as extinct.
+        worlds: Worlds with the ends from their manifests.
+        until: Step by which a world counts as extinct.
 
     Returns:
-        The Kaplan–Meier share with its interval: a world that lives at its end tells nothing of later steps.
+        The Kaplan–Meier share with its interval; a world that is alive at its end gives no information on later steps.
     """
     return _share(worlds, [world.extinct_step for world in worlds], until)
 
 
 def species_loss(worlds: Sequence[WorldRecord], until: float) -> ExtinctShare:
-    """The share of worlds that have lost a species by a step [step]: the records' own, or another.
+    """Share of worlds that have lost a species by a step [step], the records' own or another.
 
     Args:
-        worlds: as for `world_extinction`.
-        until: the step by which it counts as lost.
+        worlds: As for `world_extinction`.
+        until: Step by which the species counts as lost.
 
     Returns:
         The Kaplan–Meier share with its interval.

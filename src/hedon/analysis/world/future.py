@@ -1,4 +1,4 @@
-"""Which worlds are futures of one world, and so are not independent."""
+"""Detects worlds that are futures of one world, and are therefore not independent."""
 
 from collections.abc import Sequence
 

@@ -1,8 +1,9 @@
-"""Do agents of a species keep together, and how far are they from those that eat them? By frames, against chance.
+"""Whether agents of a species stay together, and how far they are from their predators, compared with chance.
 
-A *group* is a set of agents of one species whose centers hang together by distances of at most `REACH`. The size that
-counts is that of the group in which an agent is, itself included, so that large groups weigh as much as the agents in
-them. The same number of agents placed evenly over the arena by chance tells what crowding alone would do.
+A *group* is a set of agents of one species whose centers are linked by distances of at most `REACH`. The measure is the
+size of an agent's own group, itself included, averaged over agents, so large groups weigh as much as the agents in
+them. The same number of agents placed at random over the arena shows the effect of crowding alone. Positions come from
+frames.
 """
 
 from collections.abc import Sequence
@@ -15,23 +16,23 @@ from numpy.typing import NDArray
 
 from hedon.analysis.world.record import WorldRecord, generator
 
-sparse: Any = load("scipy.sparse", suppress_warning=True)  # these take a fifth of a second to load
+sparse: Any = load("scipy.sparse", suppress_warning=True)  # imported late: these take a fifth of a second to load
 csgraph: Any = load("scipy.sparse.csgraph", suppress_warning=True)
 spatial: Any = load("scipy.spatial", suppress_warning=True)
 
 REACH = 30.0
-"""Distance of two centers within a group [u]: three radii of the paper's agents. Our choice: at 40 u even agents
-that are placed by chance hang together in groups of dozens where the sequel's arena is full."""
+"""Maximum distance between neighboring centers in a group [u]: three radii of the paper's agents. Our choice: at 40 u,
+even agents placed at random form groups of dozens when the sequel's arena is full."""
 MOST = 400
-"""Most frames of a world that are read, evenly over its time: neighbors in time are alike."""
+"""Maximum number of frames read per world, evenly spaced in time, since successive frames are alike."""
 
 
 def group_sizes(places: NDArray[np.float64], reach: float = REACH) -> NDArray[np.int64]:
-    """The size of the group of each agent, itself included, (agents,).
+    """Size of each agent's group, itself included, (agents,).
 
     Args:
-        places: of the agents [u], (agents, 2).
-        reach: largest distance of two neighbors in a group [u].
+        places: Positions of the agents [u], (agents, 2).
+        reach: Maximum distance between neighbors in a group [u].
     """
     count = len(places)
     pairs = spatial.KDTree(places).query_pairs(reach, output_type="ndarray")
@@ -44,24 +45,24 @@ def nearest(places: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray
     """Distance of each agent to the nearest of some others [u], (agents,).
 
     Args:
-        places: of the agents [u], (agents, 2).
-        others: of the others [u], (others, 2); at least one.
+        places: Positions of the agents [u], (agents, 2).
+        others: Positions of the others [u], (others, 2); at least one.
     """
     return spatial.KDTree(others).query(places)[0]
 
 
 def company(world: WorldRecord, frames: pl.LazyFrame, hunters: Sequence[str]) -> pl.DataFrame:
-    """How the agents of a world keep company, frame by frame.
+    """Grouping of a world's agents, frame by frame.
 
     Args:
-        world: of the species that is asked.
-        frames: table `frames` of that world.
-        hunters: names of the species that eat it.
+        world: Records of the species to measure.
+        frames: Table `frames` of that world.
+        hunters: Names of the species that eat it.
 
     Returns:
-        By step: alive; group, the mean size of an agent's group; group_chance, the same by chance; distance, the mean
-        to the nearest hunter [u], null while there is none; distance_chance, the same if the agents were placed by
-        chance and the hunters where they are.
+        By step: alive; group, the mean size of an agent's group; group_chance, the same for random positions; distance,
+        the mean to the nearest hunter [u], null without hunters; distance_chance, the same for random positions of the
+        agents and actual positions of the hunters.
     """
     steps = frames.select(pl.col("step").unique().sort()).collect()["step"].to_numpy()
     shown = steps[np.unique(np.linspace(0, len(steps) - 1, min(len(steps), MOST)).astype(int))] if len(steps) else steps

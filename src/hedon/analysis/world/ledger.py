@@ -1,7 +1,7 @@
-"""Is every unit of energy accounted for?
+"""Energy ledgers: checks that every unit of energy is accounted for.
 
-Each species of a world has a ledger of its own, which closes by itself: what it gains by eating agents, of another
-species or its own, enters as `hunted`, and what it loses to those that eat it is part of `lost`.
+Each species of a world has its own ledger, which balances by itself: energy gained by eating agents, of another species
+or its own, enters as `hunted`, and energy lost to agents that eat it is part of `lost`.
 """
 
 import numpy as np
@@ -20,22 +20,22 @@ _SIGNS = {
     "capped": -1.0,
     "lost": -1.0,
 }
-"""Every flow of energy into or out of a species, as in the columns `energy_…` of the table `population`. A world has
-the columns `hunted` and `damage` only where agents eat agents, and where there are obstacles."""
+"""All flows of energy into or out of a species, with their signs, named as in the columns `energy_…` of the table
+`population`. The columns `hunted` and `damage` exist only if agents eat agents, and if there are obstacles."""
 
 
 def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> dict[str, float | None]:
-    """The ledger of one species of one world.
+    """Ledger of one species of one world.
 
     held at the end = held before + eaten + hunted + forgiven − basic − action − damage − capped − lost, in each
     interval.
 
     Returns:
-        Sums over the run [energy]: initial, held by the founders at birth, None where their rows are missing, as in a
+        Sums over the run [energy]: initial, held by the founders at birth, None if their rows are missing, as in a
         branch; each flow that the world has, by the name of its column without `energy_`; shared, given by parents to
-        children, which stays within it; final, held by the living at the end; residual, the largest difference over the
-        intervals between the energy held and what the flows say it must be: only rounding where the ledger closes, and
-        None where there is nothing to compare.
+        children, which stays within the species; final, held by the agents alive at the end; residual, the largest
+        difference over the intervals between the energy held and the energy that the flows imply: only rounding if the
+        ledger balances, and None if there is nothing to compare.
     """
     total = population["energy_total"].to_numpy()
     residuals = interval_residuals(population, agents)
@@ -50,13 +50,13 @@ def world_ledger(population: pl.DataFrame, agents: pl.DataFrame) -> dict[str, fl
 
 
 def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) -> NDArray[np.float64]:
-    """By how much each interval of one species leaves its ledger open, (rows,) [energy]; see `world_ledger`.
+    """Imbalance of one species' ledger in each interval, (rows,) [energy]; see `world_ledger`.
 
     Returns:
-        NaN for the first interval where the energy held before it is not known.
+        NaN for the first interval if the energy held before it is unknown.
 
     Raises:
-        ArgumentError: the rows are of several species.
+        ArgumentError: The rows are of several species.
     """
     require_one_species(population)
     initial = None if agents is None else _initial(population, agents)
@@ -67,12 +67,12 @@ def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) ->
 
 
 def flow_names(population: pl.DataFrame) -> list[str]:
-    """The columns of all flows of energy into or out of a species that a table `population` has."""
+    """Columns of a table `population` with flows of energy into or out of a species."""
     return [f"energy_{name}" for name in _SIGNS if f"energy_{name}" in population.columns]
 
 
 def _initial(population: pl.DataFrame, agents: pl.DataFrame) -> float | None:
-    """What the founders held at birth, 0 where nobody ever lived; None where their rows are missing."""
+    """Energy of the founders at birth, 0 if no agent ever lived; None if their rows are missing."""
     founders = agents.filter(pl.col("parent_id").is_null())
     begins = population.height == 0 or population["step"][0] == population["steps"][0]
     nobody = population.height > 0 and not population["agent_steps"].sum()

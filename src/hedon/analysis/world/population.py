@@ -1,7 +1,7 @@
-"""How does a world fare: who lives, is born, dies, finds no place for a child, and is it hungry?
+"""The state of a world over time: numbers, births, deaths, failed births, hunger.
 
-Where there are several species, each has rows of its own: every function here takes those of one species, and refuses
-others with an `ArgumentError`.
+If there are several species, each has its own rows: every function here takes rows of one species, and raises
+`ArgumentError` for rows of several.
 """
 
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ import polars as pl
 
 from hedon.analysis.world.species import require_one_species
 
-TAIL = 0.1  # share of a run, at its end, over which its state is averaged
+TAIL = 0.1  # final share of a run over which its state is averaged
 
 _COUNTS = ("births", "deaths", "births_failed_full", "births_failed_space")
 
@@ -22,24 +22,23 @@ def history(
     points: int = 200,
     end: float = 0.0,
 ) -> pl.DataFrame:
-    """The course of each world, in at most `points` intervals of equal length.
+    """Course of each world, in at most `points` intervals of equal length.
 
-    A run that ends within a window has a short last row in the table. What is counted in it, say one birth in 16
-    steps, tells nothing of a rate by itself, so its rates are taken over the interval before as well.
+    A run that ends within a window has a short last row in the table. Counts in it, such as one birth in 16 steps, say
+    nothing about a rate, so its rates also cover the interval before.
 
     Args:
-        population: table `population`.
-        food_kinds: names.
-        weight_names: genome columns whose means are wanted.
-        points: rows per world at most.
-        end: the least step at which the last interval ends, so that histories of several settings can have
-            the same intervals [step].
+        population: Table `population`.
+        food_kinds: Names of the food kinds.
+        weight_names: Genome columns whose means to include.
+        points: Maximum number of rows per world.
+        end: Earliest end of the last interval, so that histories of several conditions can have the same intervals
+            [step].
 
     Returns:
-        By world and bin (index of the interval): step (its end [step]); alive, energy_mean, generation_mean
-        and <weight>_mean (means over the interval); births, deaths, births_failed_full and
-        births_failed_space per 1000 steps; eaten_<kind> per 1000 steps lived. What has no value, since
-        nobody lived, is null.
+        By world and bin (index of the interval): step (its end [step]); alive, energy_mean, generation_mean and
+        <weight>_mean (means over the interval); births, deaths, births_failed_full and births_failed_space per 1000
+        steps; eaten_<kind> per 1000 agent steps. Values are null if no agent was alive to define them.
     """
     require_one_species(population)
     groups = population.group_by("world", _bin(population, points, end))
@@ -57,44 +56,44 @@ def history(
 
 
 def whole_window(population: pl.DataFrame) -> int:
-    """Length of a whole window [step]: that of the longest interval; 0 without intervals."""
+    """Length of a whole window [step], which is that of the longest interval; 0 without intervals."""
     return int(population["steps"].to_numpy().max(initial=0))
 
 
 def run_tail(population: pl.DataFrame) -> pl.DataFrame:
-    """The rows of one world's last tenth: those that end after nine tenths of its steps."""
+    """Rows of the last tenth of one world, which end after nine tenths of its steps."""
     if population.is_empty():
         return population
     return population.filter(pl.col("step") > (1 - TAIL) * pl.col("step").max())
 
 
 def mean_alive(population: pl.DataFrame) -> float | None:
-    """Agents alive, averaged over the steps of the given intervals of one world; None without intervals."""
+    """Mean number of agents alive over the steps of the given intervals of one world; None without intervals."""
     require_one_species(population)
     steps = int(population["steps"].sum())
     return int(population["agent_steps"].sum()) / steps if steps else None
 
 
 def alive_after_extinction(population: pl.DataFrame, end: int) -> float:
-    """Agents alive, averaged over the last tenth of the steps for which a world was to run before it died out.
+    """Mean number of agents alive over the last tenth of the planned steps of an extinct world.
 
-    The steps after its last agent count as empty: 0 for a world that died out before that tenth.
+    Steps after its last agent count as empty, so a world that died out before that tenth has 0.
 
     Args:
-        population: table `population` of one world that died out, with at least one interval.
-        end: steps for which it was to run [step], above 0.
+        population: Table `population` of one extinct world, with at least one interval.
+        end: Planned number of steps [step], above 0.
     """
     require_one_species(population)
-    first = int(population["step"][0]) - int(population["steps"][0])  # a branch may begin within the tenth
+    first = int(population["step"][0]) - int(population["steps"][0])  # a branch may start within the tenth
     begin = max((1 - TAIL) * end, first)
     return int(population.filter(pl.col("step") > begin)["agent_steps"].sum()) / (end - begin)
 
 
 def mean_energy(population: pl.DataFrame) -> float | None:
-    """Energy of the living, mean over the ends of the given intervals, each weighted by the number alive.
+    """Mean energy of living agents over the ends of the given intervals, weighted by the number alive.
 
     Returns:
-        None where nobody lived.
+        None if no agent was alive.
     """
     require_one_species(population)
     alive = int(population["alive"].sum())
@@ -102,16 +101,16 @@ def mean_energy(population: pl.DataFrame) -> float | None:
 
 
 def last_generation(population: pl.DataFrame) -> float | None:
-    """Mean generation of the living at the end, or when somebody lived last; None if that is not recorded."""
+    """Mean generation of the agents alive at the end, or when any was last alive; None if that is not recorded."""
     require_one_species(population)
     known = population["generation_mean"].drop_nulls()
     return float(known[-1]) if len(known) else None
 
 
 def extinct_step(population: pl.DataFrame) -> int | None:
-    """End of the last interval in which somebody lived [step]; None while somebody lives.
+    """End of the last interval with living agents [step]; None while any is alive.
 
-    Where nobody ever lived, as in a species without founders, the step at which the rows begin.
+    If no agent ever lived, as in a species without founders, the step at which the rows start.
     """
     require_one_species(population)
     if population.is_empty() or population["alive"][-1]:
@@ -121,18 +120,18 @@ def extinct_step(population: pl.DataFrame) -> int | None:
 
 
 def death_rates(population: pl.DataFrame, points: int = 100) -> pl.DataFrame:
-    """How often the agents of a species die, and of what, in at most `points` intervals.
+    """Death rates by cause of one species, in at most `points` intervals.
 
     Args:
-        population: table `population` of one species, of worlds where agents starve to death or eat agents.
-        points: rows per world at most.
+        population: Table `population` of one species, from worlds where agents starve to death or eat agents.
+        points: Maximum number of rows per world.
 
     Returns:
-        By world and bin: step (its end [step]); age_energy, starved and eaten, deaths per 10,000 steps lived, null
-        where nobody lived.
+        By world and bin: step (its end [step]); age_energy, starved and eaten, deaths per 10,000 agent steps, null if
+        no steps were lived.
     """
     require_one_species(population)
-    if "deaths_eaten" not in population.columns:  # nobody eats agents there
+    if "deaths_eaten" not in population.columns:  # no agents are eaten there
         population = population.with_columns(deaths_eaten=pl.lit(0, pl.Int32))
     counted = ("deaths", "deaths_starved", "deaths_eaten", "agent_steps")
     rows = population.group_by("world", _bin(population, points)).agg(
@@ -146,7 +145,7 @@ def death_rates(population: pl.DataFrame, points: int = 100) -> pl.DataFrame:
 
 
 def _bin(population: pl.DataFrame, points: int, end: float = 0.0) -> pl.Expr:
-    """The index of the interval of a row, of at most `points` from 0 to its end or a later one [step]."""
+    """Index of a row's interval, of at most `points` from 0 to the end of the rows or a later one [step]."""
     width = max((max(_last_step(population), end) + 1) / points, 1.0)
     return ((pl.col("step") - 1) / width).floor().cast(pl.Int64).alias("bin")
 

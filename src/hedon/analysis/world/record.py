@@ -1,4 +1,4 @@
-"""The worlds of some runs, one by one, with the condition that each of them repeats."""
+"""The worlds of some runs, one by one, each with the condition that it replicates."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,35 +19,35 @@ from hedon.record.reader import Run
 from hedon.text import brief
 
 MOST_DIFFERENCES = 3
-"""Most settings that a condition is named by."""
+"""Maximum number of settings in the name of a condition."""
 SEED = 20240717
 """Seed of the bootstrap and the neutral walks, so that the same records give the same numbers."""
 
 
 @dataclass(frozen=True, eq=False)
 class WorldRecord:
-    """All that the records hold of one world, or of one species of it.
+    """Records of one world, or of one species in it.
 
     Two records are equal only if they are the same object.
 
     Attributes:
-        condition: the setting that the world repeats: worlds of equal config share it. Where there are several
-            species, with the name of the species.
-        run: name of the run's folder.
-        seed: of the world.
-        config: the resolved config; where there are several species, its sections are those of this one.
-        food_kinds, reward_names, neutral_names: of the tables' columns, in their order; where there are several
-            species, those that this one eats, and has.
-        agents: its rows of the table `agents`, by agent_id.
-        population: its rows of the table `population`, by step.
-        last_step: up to which the records reach [step].
-        first_step: at which they begin: 0, or where the run branched off another [step].
-        planned_step: the last step planned for its run, or reached so far if the run is unfinished [step].
-        hunts: whether any species of its world eats agents.
-        extinct_step: at which nobody was left [step]; None while somebody lives.
-        apart_step: at which the first of the world's other species was gone [step]; None while all of them live.
-        prey: the species that it eats, its own among them if it does.
-        species: whose record it is; `agent` where a file names none.
+        condition: Condition that the world replicates, shared by worlds of equal config; with the name of the species
+            if there are several.
+        run: Name of the run's folder.
+        seed: Seed of the world.
+        config: Complete config of the run.
+        food_kinds, reward_names, neutral_names: Columns of the tables, in order; if there are several species, only
+            those of food that this one eats and genes that it has.
+        agents: Rows of the table `agents`, by agent_id.
+        population: Rows of the table `population`, by step.
+        last_step: End of the records [step].
+        first_step: Start of the records: 0, or the step at which the run branched off another [step].
+        planned_step: Last step planned for its run, or reached so far if the run is unfinished [step].
+        hunts: Whether any species of its world eats agents.
+        extinct_step: Step of its extinction [step]; None while any agent is alive.
+        apart_step: Step at which the first of the world's other species was gone [step]; None while all of them live.
+        prey: Species that it eats, possibly including its own.
+        species: Name of the species; `agent` if a file names none.
     """
 
     condition: str
@@ -70,37 +70,37 @@ class WorldRecord:
 
     @cached_property
     def settings(self) -> str:
-        """The fingerprint of its settings: that of its config."""
+        """Digest of its config, which identifies its settings."""
         return digest(self.config)
 
     @property
     def end_step(self) -> int:
-        """The step at which measures of the world end [step]; from its extinction to this step it counts as empty."""
+        """End of the world's measures [step]; from its extinction to this step it counts as empty."""
         return max(self.planned_step, self.last_step)
 
     @property
     def born(self) -> pl.DataFrame:
-        """Its agents whose lives are told from birth on: all, but for those that lived when a branch began."""
+        """Agents whose lives are recorded from birth, which excludes those alive when a branch started."""
         return born_since(self.agents, self.first_step)
 
     @property
     def own(self) -> SpeciesConfig:
-        """The settings of its species."""
+        """Settings of its species."""
         return self.config.species[self.species]
 
     def gene(self, column: str) -> Gene:
-        """The gene of a column."""
+        """Gene of a column."""
         return gene_of(self.config, f"{self.species}.{column}")
 
     @property
     def weight_names(self) -> tuple[str, ...]:
-        """All genome columns, in order: those that enter the reward, then the neutral genes."""
+        """All genome columns in order: those that enter the reward, then the neutral genes."""
         return (*self.reward_names, *self.neutral_names)
 
     def recorded_step(self) -> int:
-        """Up to which step all agents are in the records [step]; 0 if to none.
+        """Last step at which all agents are in the records [step]; 0 if there is none.
 
-        The living are written now and then, so a run that goes on, or was killed, lacks those born since.
+        Living agents are written only now and then, so an unfinished or killed run lacks those born since.
         """
         steps = self.population["step"].to_numpy()
         born, died = (np.sort(self.agents[name].drop_nulls().to_numpy()) for name in ("birth_step", "death_step"))
@@ -108,13 +108,13 @@ class WorldRecord:
         return int(steps[known == self.population["alive"].to_numpy()].max(initial=0))
 
     def until(self, step: int) -> "WorldRecord":
-        """The world as its records would be if it had ended earlier, except for what the living had done by then.
+        """The world as if its records had ended earlier, except for what living agents had done by then.
 
-        Agents that die later live on, with `death_step` missing. What such agents had eaten, spent, borne and so on by
+        Agents that die later count as alive, with `death_step` missing. What such agents had eaten, spent or borne by
         that step was not recorded, so it is missing too.
 
         Args:
-            step: the end [step]; at the end of an interval, or the last one is lost.
+            step: New end [step]; if it is within an interval, that interval is lost.
         """
         planned = min(self.planned_step, step)
         if step >= self.last_step:
@@ -135,28 +135,29 @@ class WorldRecord:
 
 
 def born_since(agents: pl.DataFrame, first_step: int) -> pl.DataFrame:
-    """The agents whose lives the records tell from birth on: all of a run, of a branch those that were born in it.
+    """Agents whose lives are recorded from birth: all agents of a run, or those born in a branch.
 
-    Of those who lived when a branch began nobody is there who had died by then: they would make lives too long.
+    Of the agents alive before a branch started, those that died by then are not recorded; the rest would bias lives
+    upward.
 
     Args:
-        agents: table `agents`.
-        first_step: at which the records begin [step].
+        agents: Table `agents`.
+        first_step: Start of the records [step].
     """
     return agents.filter(pl.col("birth_step") > first_step) if first_step else agents
 
 
 def all_eaten(kind: str) -> str:
-    """The column of a record's `population` that has what all species of its world ate of a kind of food."""
+    """Column of a record's `population` with what all species of its world ate of a kind of food."""
     return f"all_eaten_{kind}"
 
 
 Conditions = Mapping[str, Sequence[WorldRecord]]
-"""Worlds by condition, at least one of each."""
+"""Worlds by condition, at least one each."""
 
 
 def with_roles(rows: Iterable[Mapping[str, Any]], conditions: Conditions) -> list[dict[str, Any]]:
-    """Rows that name a condition and a weight, each with what its gene is for, as `Gene.role` has it."""
+    """Adds to rows with a condition and a weight the role of the gene, from `Gene.role`."""
     found = []
     for row in rows:
         at, told = list(row).index("weight") + 1, list(row.items())
@@ -166,13 +167,13 @@ def with_roles(rows: Iterable[Mapping[str, Any]], conditions: Conditions) -> lis
 
 
 def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
-    """Reads the worlds of some runs; damaged parts are left out.
+    """Reads the worlds of some runs; damaged parts are skipped.
 
-    Runs of equal configs count as one condition. A seed that appears twice within a condition is one world
-    made twice: the longer record is kept.
+    Runs with equal configs form one condition. If a seed appears twice in a condition, both are the same world, and the
+    longer record is kept.
 
     Raises:
-        RecordError, ConfigError: a run cannot be read.
+        RecordError, ConfigError: A run cannot be read.
     """
     kept: dict[tuple[str, int], WorldRecord] = {}
     runs = [run.load() for run in runs]
@@ -186,7 +187,7 @@ def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
 
 
 def by_condition(worlds: Iterable[WorldRecord]) -> dict[str, list[WorldRecord]]:
-    """The worlds of each condition, in their order."""
+    """Worlds by condition, in their order."""
     groups: dict[str, list[WorldRecord]] = {}
     for world in worlds:
         groups.setdefault(world.condition, []).append(world)
@@ -194,17 +195,17 @@ def by_condition(worlds: Iterable[WorldRecord]) -> dict[str, list[WorldRecord]]:
 
 
 def labels(world: WorldRecord) -> dict[str, Any]:
-    """The columns that name a world."""
+    """Columns that identify a world."""
     return {"condition": world.condition, "seed": world.seed}
 
 
 def generator(world: WorldRecord) -> np.random.Generator:
-    """The source of chance for one world, the same in each analysis."""
+    """Random number generator for one world, the same in each analysis."""
     return np.random.default_rng([SEED, world.seed])
 
 
 def shares_noise(world: WorldRecord) -> bool:
-    """Whether its mutations depend on the births of other species, which its record does not have: frozen noise."""
+    """Whether mutations depend on births of other species, which the record lacks: tabulated noise."""
     return len(world.config.species) > 1 and world.config.world.mutation_noise == "tabulated"
 
 
@@ -230,7 +231,7 @@ def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
 
 
 def _apart(world: WorldRecord, every: Sequence[WorldRecord]) -> int | None:
-    """When the first of the other species of a world was gone [step]."""
+    """Step at which the first of a world's other species was gone [step]."""
     others = [each for each in every if each.seed == world.seed and each is not world]
     return min((each.extinct_step for each in others if each.extinct_step is not None), default=None)
 
@@ -240,7 +241,7 @@ def _records(
 ) -> list[WorldRecord]:
     worlds, planned = [], _planned_step(run, population)
     for index, seed in enumerate(run.manifest.seeds):
-        # In one piece: sums must not depend on the parts in which rows were written.
+        # Contiguous: sums must not depend on the chunks in which rows were written.
         mine = agents.filter(pl.col("world") == index).sort("agent_id").rechunk()
         rows = population.filter(pl.col("world") == index).rechunk()
         ends = [rows["step"].max(), mine["birth_step"].max(), mine["death_step"].max()]
@@ -269,7 +270,7 @@ def _records(
 
 
 def _planned_step(run: Run, population: pl.DataFrame) -> int:
-    """The last step planned for all worlds of a run, or reached so far if it is unfinished; at least 1 [step]."""
+    """Last step planned for all worlds of a run, or reached so far if it is unfinished; at least 1 [step]."""
     manifest = run.manifest
     longest = max(manifest.steps_done, default=0)
     recorded = int(population["step"].to_numpy().max(initial=0))
@@ -277,7 +278,7 @@ def _planned_step(run: Run, population: pl.DataFrame) -> int:
 
 
 def gone_step(run: Run, index: int, agents: pl.DataFrame, population: pl.DataFrame) -> int | None:
-    """At which step nobody was left of one species of a world [step]; None while somebody lives."""
+    """Step at which the last agent of one species of a world was gone [step]; None while any is alive."""
     known = run.manifest.extinct_steps[index] if run.manifest.extinct_steps else None
     if not run.columns.several:  # the world's end is that of its species
         return extinct_step(population) if known is None else known
@@ -289,7 +290,7 @@ def gone_step(run: Run, index: int, agents: pl.DataFrame, population: pl.DataFra
 
 
 def _labels(runs: Sequence[Run]) -> dict[str, str]:
-    """A short name of each setting, by `_key`, that no other has: "baseline (released)", or with what differs."""
+    """A unique short name of each condition, by `_key`: "baseline (released)", or with the settings that differ."""
     first: dict[str, Run] = {}
     for run in runs:
         first.setdefault(_key(run), run)
@@ -309,12 +310,12 @@ def _labels(runs: Sequence[Run]) -> dict[str, str]:
 
 
 def _key(run: Run) -> str:
-    """What runs of one setting have in common: the digest of their config, or the folder where there is none."""
+    """Key of a run's condition: the digest of its config, or its folder if there is none."""
     return run.manifest.config_digest or str(run.path)
 
 
 def _differences(runs: Sequence[Run]) -> list[str]:
-    """What tells the settings of some runs apart, a phrase for each; empty where that is too much for a name."""
+    """A phrase for each run with the settings that distinguish it; empty if these are too many for a name."""
     values = [flatten(run.config) for run in runs]
     paths = dict.fromkeys(path for each in values for path in each)
     varied = [path for path in paths if any(each.get(path) != values[0].get(path) for each in values)]

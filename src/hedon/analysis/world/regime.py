@@ -1,33 +1,32 @@
-"""In which regime is a world? Selection means something else in each.
+"""The regime of a world: selection has a different meaning in each.
 
-What stops a population from growing is read off five rates of the table `population`, over intervals long enough for
-some hundred births:
+Five rates from the table `population`, over intervals long enough for some hundred births, show what stops a
+population from growing:
 
-- *hunger*: share of what was charged that could not be paid, since energy cannot fall below 0.
-- *refusal*: share of the births tried that found no place or no slot.
+- *hunger*: share of the energy charged that could not be paid, since energy cannot fall below 0.
+- *refusal*: share of attempted births that found no place or no slot.
 - *uptake*: energy eaten over energy that grew, of the foods that the species eats, by all species that eat them. A
   species that eats no food has none.
-- *turnover*: deaths and births per agent and step, over the chance of death of a starving newborn.
+- *turnover*: deaths and births per agent and step, over the probability of death of a starving newborn.
 - *crowding*: agents alive over the capacity.
 
-Where there are several species, each has a regime of its own.
+If there are several species, each has its own regime.
 
-The rules, tried in this order, and why:
+The rules are tried in this order:
 
-1. `extinct`: nobody lives at the end of the interval.
-2. `full and idle`: turnover below 0.1, crowding or refusal of at least 0.9: those who live hold nearly all places, and
-   ten times fewer are born and die than among the starving. Selection has next to nothing to act on.
+1. `extinct`: no agent is alive at the end of the interval.
+2. `full and idle`: turnover below 0.1, crowding or refusal of at least 0.9. Living agents hold nearly all places, and
+   births and deaths are ten times rarer than among the starving. Selection has next to nothing to act on.
 3. `starving, limited by room`: hunger of at least 0.25 and refusal of at least 0.1. A starving agent of the paper's
-   setting replaces itself (R0 = 1.02 at energy 0), so hunger does not stop growth; places do. Eating pays by way of
-   energies near 0 alone, and who breeds is largely luck: drift is strong.
-4. `limited by food`: uptake of at least 0.8 and refusal below 0.1: what grows is eaten and children find places, so
-   numbers are held down by hunger alone. Agents compete for food: selection on eating is strongest.
-5. `between`: none of these; a growing world is here.
+   setting replaces itself (R0 = 1.02 at energy 0), so hunger does not stop growth; lack of places does. Eating pays
+   only by way of energies near 0, and who breeds is largely luck: drift is strong.
+4. `limited by food`: uptake of at least 0.8 and refusal below 0.1. What grows is eaten and children find places, so
+   only hunger limits numbers. Agents compete for food: selection on eating is strongest.
+5. `between`: none of these; includes growing worlds.
 
-The thresholds are conventions; they lie between clear cases. In steady numbers the births tried are deaths /
-(1 − refusal): a refusal of 0.1 says that without it a generation would grow by a ninth, the baseline's third that it
-would grow by half. A hunger of 0.25 is half of the baseline's. A tenth of the turnover of the starving is a mean life
-of some 50,000 steps.
+The thresholds are conventions, between clear cases. In steady numbers, the births attempted are deaths / (1 − refusal):
+without a refusal of 0.1 a generation would grow by a ninth, without the baseline's third by half. A hunger of 0.25 is
+half of the baseline's. A tenth of the turnover of the starving is a mean life of some 50,000 steps.
 """
 
 from itertools import pairwise
@@ -59,16 +58,16 @@ ROOM_HUNGER = 0.25
 ROOM_REFUSAL = 0.1
 FOOD_UPTAKE = 0.8
 INTERVALS = 40
-"""Into which a run is cut; each has its own regime."""
+"""Number of intervals that a run is divided into; each has its own regime."""
 
 
 def regimes(
     population: pl.DataFrame, config: Config, intervals: int = INTERVALS, species: str | None = None
 ) -> list[dict[str, Any]]:
-    """The regimes of a world over time.
+    """Regimes of a world over time.
 
     Returns:
-        Of each interval what `interval_regime` gives.
+        The result of `interval_regime` for each interval.
     """
     require_one_species(population)
     if population.is_empty():
@@ -82,11 +81,11 @@ def regimes(
 
 
 def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> dict[str, Any]:
-    """The regime over some rows of the table `population` of one species of a world that follow one another.
+    """Regime over consecutive rows of the table `population` of one species of a world.
 
     Returns:
         step, the end of the interval, and steps, its length [step]; regime, one of `REGIMES`; and the rates hunger,
-        refusal, uptake, turnover and crowding, NaN where they are not defined.
+        refusal, uptake, turnover and crowding, NaN if they are undefined.
 
     Raises:
         ArgumentError: The rows are of several species.
@@ -119,7 +118,7 @@ def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> dict[st
 
 
 def _eaten(rows: pl.DataFrame, kind: str) -> float:
-    """What was eaten of a kind of food, by all species where that is known."""
+    """Amount of a kind of food that was eaten, by all species if that is known."""
     name = all_eaten(kind) if all_eaten(kind) in rows.columns else f"eaten_{kind}"
     return float(rows[name].sum())
 
@@ -137,7 +136,7 @@ _SUMMED = (
 
 
 def _name(alive: int, hunger: float, refusal: float, uptake: float, turnover: float, crowding: float) -> str:
-    """The rules; a comparison with a rate that is not defined is false."""
+    """Applies the rules; a comparison with an undefined rate is false."""
     if alive == 0:
         return EXTINCT
     if turnover < IDLE_TURNOVER and (crowding >= IDLE_CROWDING or refusal >= IDLE_CROWDING):

@@ -1,7 +1,7 @@
-"""The door to tables of worlds with several species: code that sums or averages rows takes those of one species.
+"""Access to tables of worlds with several species: code that sums or averages rows must take rows of one species.
 
-Rows of prey and predators look alike, so their means would be numbers of nobody. Functions that read a table ask here
-that it is of one species.
+Rows of prey and predators look alike, but means over both are meaningless. Functions that read a table check here that
+it is of one species.
 """
 
 from collections.abc import Mapping
@@ -18,12 +18,12 @@ from hedon.record.schema import Columns
 
 @dataclass(frozen=True)
 class Kind:
-    """What the columns of a table mean for one species.
+    """Meaning of a table's columns for one species.
 
     Attributes:
-        foods: the kinds of food that it may eat.
-        prey: the species that it may eat, its own among them if it does.
-        rewards, neutral: its genes: those that have an effect, and the neutral genes.
+        foods: Kinds of food that it may eat.
+        prey: Species that it may eat, possibly including its own.
+        rewards, neutral: Its genes that have an effect, and its neutral genes.
     """
 
     foods: tuple[str, ...]
@@ -38,11 +38,11 @@ class Kind:
 
 
 def by_species(rows: pl.DataFrame, columns: Columns) -> dict[str, pl.DataFrame]:
-    """The rows of each species, by name, in the order of the config; all rows where there is one species.
+    """Rows of each species by name, in the order of the config; all rows if there is one species.
 
     Args:
-        rows: table `agents` or `population`, or a part of it.
-        columns: of the run, `run.columns`.
+        rows: Table `agents` or `population`, or a part of it.
+        columns: Columns of the run, `run.columns`.
     """
     if not columns.several:
         return {columns.species[0]: rows}
@@ -53,7 +53,7 @@ def kinds(columns: Columns, config: Config | None = None) -> Mapping[str, Kind]:
     """What each species of a run eats and inherits, by name.
 
     Raises:
-        ArgumentError: There are several species and no config.
+        ArgumentError: There are several species but no config.
     """
     if not columns.several:
         only = Kind(columns.food_kinds, columns.prey, columns.reward_names, columns.neutral_names)
@@ -76,7 +76,7 @@ def require_one_species(rows: pl.DataFrame) -> None:
     """Refuses rows of several species.
 
     Raises:
-        ArgumentError: they are of several.
+        ArgumentError: The rows are of several species.
     """
     if "species" in rows.columns and rows["species"].n_unique() > 1:
         names = ", ".join(rows["species"].unique(maintain_order=True))
