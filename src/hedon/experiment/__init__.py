@@ -1,1 +1,1 @@
-"""The engine as Python objects, and the loop that advances it, writes records, and goes on from checkpoints."""
+"""The engine as Python objects, and the loop that advances it, writes records, and continues from checkpoints."""

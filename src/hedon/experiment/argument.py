@@ -1,4 +1,4 @@
-"""Checks arguments from Python and from the command line: numbers, seeds, folders."""
+"""Checks of arguments from Python and the command line: numbers, seeds, folders."""
 
 from collections.abc import Iterable
 from contextlib import suppress
@@ -15,20 +15,20 @@ MAX_SEED = 2**63 - 1
 MAX_WORLDS = 10_000
 MAX_STEPS = 2**31 - 1
 MAX_DIGITS = 40
-"""Most digits of a seed, leading zeros included."""
+"""Maximum digits of a seed, including leading zeros."""
 MAX_THREADS = 1024
 MAX_SECONDS = 1e9
 INSTRUCTION_SETS = ("avx512", "avx2", "neon", "portable")
-"""What the engine can compute with, the fastest first; a processor has some of them."""
+"""Instruction sets that the engine can use, fastest first; a processor supports some of them."""
 DEVICES = ("cuda",)
 """Backends that are devices, not instruction sets of the processor."""
 
 
 def integer(name: str, value: Any, low: int, high: int) -> int:
-    """A whole number within bounds; NumPy's integers are valid too.
+    """Returns an integer within bounds; NumPy integers are valid too.
 
     Raises:
-        ArgumentError: It is not.
+        ArgumentError: The value is not an integer within the bounds.
     """
     with suppress(TypeError):
         if not isinstance(value, bool) and low <= index(value) <= high:
@@ -37,10 +37,10 @@ def integer(name: str, value: Any, low: int, high: int) -> int:
 
 
 def number(name: str, value: Any, low: float, high: float) -> float:
-    """A number within bounds.
+    """Returns a number within bounds.
 
     Raises:
-        ArgumentError: It is not.
+        ArgumentError: The value is not a number within the bounds.
     """
     with suppress(TypeError, ValueError, OverflowError):
         if not isinstance(value, str | bool) and low <= float(value) <= high:
@@ -49,10 +49,10 @@ def number(name: str, value: Any, low: float, high: float) -> float:
 
 
 def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
-    """Seeds, one per world.
+    """Returns seeds as a tuple, one per world.
 
     Raises:
-        ArgumentError: It is not a list of whole numbers, it is empty or too long, or a seed is out of bounds.
+        ArgumentError: The value is not a list of integers, it is empty or too long, or a seed is out of bounds.
     """
     if isinstance(values, str | bytes) or not isinstance(values, Iterable):
         raise ArgumentError(f"seeds = {_text(values)}: must be a list of whole numbers, one per world, such as [1, 2]")
@@ -64,10 +64,10 @@ def seed_list(values: Any, largest: int = MAX_SEED) -> tuple[int, ...]:
 
 
 def different(seeds: tuple[int, ...], place: str = "seeds") -> tuple[int, ...]:
-    """The same seeds, which must differ.
+    """Returns the seeds if they all differ.
 
     Raises:
-        ArgumentError: One appears twice.
+        ArgumentError: A seed appears twice.
     """
     seen: set[int] = set()
     for seed in seeds:
@@ -78,7 +78,7 @@ def different(seeds: tuple[int, ...], place: str = "seeds") -> tuple[int, ...]:
 
 
 def parse_seeds(text: str, place: str = "seeds") -> tuple[int, ...]:
-    """Seeds from "7", "1-5", "1,4,7-9" or "[1, 4]".
+    """Parses seeds from "7", "1-5", "1,4,7-9" or "[1, 4]".
 
     Raises:
         ArgumentError: The text is not such a list, a seed is out of range, there are too many, or one appears twice.
@@ -102,10 +102,10 @@ def parse_seeds(text: str, place: str = "seeds") -> tuple[int, ...]:
 
 
 def folder(name: str, value: Any) -> Path:
-    """A path, from a path or a text.
+    """Returns a path from a path or a string.
 
     Raises:
-        ArgumentError: It is neither, or empty, or has a null character.
+        ArgumentError: The value is neither, or is empty, or has a null character.
     """
     if not isinstance(value, str | Path) or not str(value) or "\0" in str(value):
         raise ArgumentError(f"{name} = {_text(value)}: must be the path of a folder")

@@ -1,4 +1,4 @@
-"""Continues from a checkpoint of a run with changed settings, as a new run that names its parent."""
+"""Continues from a checkpoint of a run with changed settings, as a new run that records its parent."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -31,14 +31,14 @@ from hedon.record.schema import columns_of
 
 @dataclass(frozen=True, slots=True)
 class BranchPlan:
-    """A branch that is ready to begin.
+    """A branch that is ready to start.
 
     Attributes:
-        run: What to run, with the total steps.
-        parent: The run and the step that it starts from.
-        checkpoint: The worlds to start from.
+        run: Plan of the new run, with the total steps.
+        parent: Run and step from which it starts.
+        checkpoint: Worlds from which it starts.
         backend: Instruction set to use.
-        only: Index of the parent's world that all worlds go on from; None if each goes on from its own.
+        only: Index of the parent's world from which all worlds continue; None if each continues from its own.
     """
 
     run: RunPlan
@@ -63,20 +63,21 @@ def plan_branch(
     """Plans a branch of a run; changes nothing.
 
     Args:
-        folder: Of the run to branch from.
-        out: Folder of the new run; None for one beside the old one, named after the step.
+        folder: Folder of the run to branch from.
+        out: Folder of the new run; None for one next to the old one, named after the step.
         overrides: Settings to change, each as PATH=VALUE.
         at: Step of one of the run's checkpoints; None for the newest.
-        steps: Steps of each world in all; None for those that the old run was planned with.
-        threads: Threads to use; 0 for all processors.
-        frames: Steps between two frames; None for those of the old run.
+        steps: Total steps of each world; None for the number planned for the old run.
+        threads: Number of threads; 0 for all processors.
+        frames: Steps between two frames; None for the old run's.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
-        seeds: Of several futures of one world, one each; None to go on with the seeds of the old run.
+        seeds: Seeds of several futures of one world; None to continue with the seeds of the old run.
         of: With `seeds`, the seed of the old run's world; None for its only one.
 
     Raises:
-        RecordError: It is not a run, has no such checkpoint or a damaged one, or has come further than `steps`.
-        ConfigError: A setting is wrong, or fixes the shape of the saved worlds.
+        RecordError: The folder is not a run, its checkpoint is missing or damaged, or the run is already beyond
+            `steps`.
+        ConfigError: A setting is wrong, or determines the shape of the saved worlds.
         ArgumentError: Another argument is wrong.
     """
     folder = argument.folder("folder", folder)
@@ -110,7 +111,7 @@ def plan_branch(
 
 
 def start_branch(plan: BranchPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
-    """Begins a branch that `plan_branch` planned; see `branch`."""
+    """Starts a branch from `plan_branch`; see `branch`."""
     with count_interrupts() as interrupted:
         require_memory(plan.run.config, len(plan.run.seeds), plan.run.threads)
         simulation = Simulation(plan.run.config, plan.run.seeds, plan.run.threads, plan.backend, plan.run.rules)
@@ -132,34 +133,34 @@ def branch(
     seeds: Iterable[int] | None = None,
     of: int | None = None,
 ) -> Manifest:
-    """Continues from a checkpoint of a run, in a new folder, with some settings changed or with other chances.
+    """Continues from a checkpoint of a run, in a new folder, with changed settings or different random numbers.
 
-    With `seeds`, one world of the old run has several futures: the same agents, genes and networks, and from then on
-    the chances of each seed. The new run's tables begin at the checkpoint. `agents` has the agents that lived then or
-    were born later. The first row of `population` counts from the last row before the checkpoint.
+    With `seeds`, one world of the old run gets several futures: the same agents, genes and networks, and from then on
+    the random numbers of each seed. The new run's tables start at the checkpoint. `agents` has the agents alive then or
+    born later. The first row of `population` counts from the last row before the checkpoint.
 
     Args:
         folder: Folder of the parent, which is only read.
-        out: Folder of the new run; must not hold a run already. None for one next to the parent's.
-        overrides: Texts `path=value`, as for `--set`.
-        at: Step of the checkpoint; None for the newest one.
+        out: Folder of the new run, which must not hold a run; None for one next to the parent's.
+        overrides: Strings `path=value`, as for `--set`.
+        at: Step of the checkpoint; None for the newest.
         steps: Total steps of each world, including those before the checkpoint; None for the parent's.
-        threads: Threads to use; 0 for all processors. Changes no result.
+        threads: Number of threads; 0 for all processors. Changes no result.
         frames: Steps between two frames; None for the parent's.
         callbacks: Functions of a `Moment`, called about five times a second and at the end.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
-        seeds: Of several futures of one world, one each; None to go on with the seeds of the old run.
+        seeds: Seeds of several futures of one world; None to continue with the seeds of the old run.
         of: With `seeds`, the seed of the old run's world; None for its only one.
 
     Returns:
-        The manifest of the new run as it was saved at the end.
+        The manifest of the new run as saved at the end.
 
     Raises:
-        RecordError: The checkpoint is not there or does not fit, or a changed setting would change the shape of a
-            world's arrays; the message names it.
+        RecordError: The checkpoint is missing or does not fit, or a changed setting, which the message gives, would
+            change the shape of a world's arrays.
         ConfigError: An override is wrong.
         ArgumentError: A number is out of bounds.
-        MemoryNeedError: It needs more memory than there is.
+        MemoryNeedError: The run needs more memory than there is.
         EngineError: A world reports an error.
     """
     plan = plan_branch(folder, out, overrides, at, steps, threads, frames, checkpoint_seconds, seeds, of)
@@ -167,10 +168,10 @@ def branch(
 
 
 def _world_of(old: Manifest, of: int | None, config: Config, *, futures: bool) -> int | None:
-    """The index of the world that has several futures; None where each world only goes on.
+    """Index of the world that gets several futures; None if each world only continues.
 
     Raises:
-        ArgumentError: There is no such world, it must be named, or its obstacles follow from its seed.
+        ArgumentError: The world does not exist, must be specified, or has obstacles that depend on its seed.
     """
     if not futures:
         if of is not None:

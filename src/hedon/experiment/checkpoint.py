@@ -19,16 +19,16 @@ from hedon.record.error import RecordError
 from hedon.record.folder import TABLE_FOLDERS
 
 SAME_BITS = (frozenset({"avx2", "avx512", "neon", "cuda", EMULATED}),)
-"""Instruction sets and devices that compute the same bits, so that one can continue what another began."""
+"""Sets of backends that compute the same bits, so that one can continue what another started."""
 SHOWN = 5
-"""Most differing settings that a message lists."""
+"""Maximum number of differing settings in a message."""
 
 
 def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], name: str) -> None:
     """Compares a checkpoint with the run that is to continue from it.
 
     Raises:
-        RecordError: The version, a setting or the seeds differ; the message says which.
+        RecordError: The version, a setting or the seeds differ; the message gives the difference.
     """
     here = version("hedon")
     if head.hedon_version != here:
@@ -55,10 +55,10 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
 
 
 def require_undriven(folder: Path, config: Config) -> None:
-    """Refuses to go on with worlds whose agents a program told what to do.
+    """Refuses to continue worlds whose agents were driven by a program.
 
     Raises:
-        RecordError: They are such worlds.
+        RecordError: A program drove the worlds.
     """
     if config.driven:
         raise RecordError(
@@ -68,8 +68,10 @@ def require_undriven(folder: Path, config: Config) -> None:
 
 
 def same_backend(backend: str | None) -> str:
-    """The backend to continue with after `backend`: HEDON_BACKEND's, the same device where it can be used, or the best
-    instruction set of this processor with the same bits.
+    """Selects a backend with the same bits as `backend`.
+
+    HEDON_BACKEND takes precedence, then the same device if it can be used, then the best instruction set of this
+    processor.
 
     Raises:
         RecordError: HEDON_BACKEND names one with different bits.
@@ -88,16 +90,16 @@ def same_backend(backend: str | None) -> str:
 
 
 def restore(simulation: Simulation, checkpoint: Checkpoint, name: str, only: int | None = None) -> Start:
-    """Puts the worlds of a checkpoint into a simulation, and checks that they are as they were saved.
+    """Loads the worlds of a checkpoint into a simulation, and checks that they are as they were saved.
 
     Args:
-        simulation: With the seeds by which the worlds go on.
-        checkpoint: Of as many worlds.
-        name: Of the checkpoint, for errors.
+        simulation: Simulation with the seeds with which the worlds continue.
+        checkpoint: Checkpoint of as many worlds.
+        name: Name of the checkpoint, for errors.
         only: Index of the world that all worlds of the simulation become; None if each becomes its own.
 
     Returns:
-        Where the simulation now is.
+        The state at which the simulation now is.
 
     Raises:
         RecordError: The simulation cannot use the arrays. Do not use the simulation after that.

@@ -1,4 +1,4 @@
-"""Devices that can advance worlds instead of the processor: which there are, and the libraries that drive them."""
+"""Devices that can advance worlds instead of the processor, and their libraries."""
 
 import os
 from pathlib import Path
@@ -9,19 +9,19 @@ from hedon.experiment.argument import DEVICES
 from hedon.text import count
 
 EMULATED = "cuda-emulated"
-"""The same kernels on the processor, thread by thread: only for tests, which build its library."""
+"""The device's kernels on the processor, thread by thread; only for tests, which build the library."""
 EMULATION_VARIABLE = "HEDON_CUDA_EMULATION"
-"""Environment variable with the file of that library."""
+"""Environment variable with the path of that library."""
 LIBRARY = "_cuda.so"
-"""The library of the device, beside the engine; `make cuda` builds it."""
+"""The library of the device, next to the engine; `make cuda` builds it."""
 
 WORLDS_PER_CORE = 3
 """Worlds per processor core from which a device is faster: with 200 agents alive, an H100 advances each of up to 64
-worlds by 560 to 1,140 steps a second, a core makes some 1,800 (docs/gpu.md)."""
+worlds by 560 to 1,140 steps a second, and a core makes about 1,800 (docs/gpu.md)."""
 
 
 def few_worlds(worlds: int, cores: int) -> str:
-    """A sentence for a run on a device that has fewer worlds than keep it busy; empty for more."""
+    """A sentence for a run with too few worlds to keep a device busy; empty for more."""
     enough = WORLDS_PER_CORE * cores
     if worlds >= enough:
         return ""
@@ -32,17 +32,17 @@ def few_worlds(worlds: int, cores: int) -> str:
 
 
 def is_device(backend: str) -> bool:
-    """Whether this is the name of a device, not of an instruction set."""
+    """Whether the backend is a device, not an instruction set."""
     return backend in (*DEVICES, EMULATED)
 
 
 def library_path() -> Path:
-    """Where the library of the devices is, if it is built."""
+    """Path of the devices' library, whether or not it is built."""
     return Path(_engine.__file__).with_name(LIBRARY)
 
 
 def device_problem(backend: str) -> str:
-    """Why a device cannot be used here, as a sentence; empty if it can."""
+    """A sentence on why a device cannot be used here; empty if it can."""
     try:
         _engine.open_device(device_library(backend))
     except EngineError as error:
@@ -51,10 +51,10 @@ def device_problem(backend: str) -> str:
 
 
 def device_library(backend: str) -> str:
-    """The file of the library for a device; empty for an instruction set.
+    """Path of a device's library; empty for an instruction set.
 
     Raises:
-        EngineError: There is no such file, or it is older than the engine.
+        EngineError: The library does not exist, or is older than the engine.
     """
     if not is_device(backend):
         return ""

@@ -1,4 +1,4 @@
-"""Computes the last steps before a run's fault again."""
+"""Repeats the last steps before a run's fault."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,17 +13,17 @@ from hedon.record.reader import open_run
 from hedon.record.rollback import find_checkpoint
 
 PIECE = 64
-"""Steps at a time: few enough that the engine has room for their deaths until they are read [step]."""
+"""Steps per piece: few enough that the engine can store their deaths until they are read [step]."""
 
 
 @dataclass(frozen=True, slots=True)
 class FaultReplay:
-    """A fault that was recorded, and the result of computing the same steps again.
+    """A recorded fault, and the result of repeating the same steps.
 
     Attributes:
-        recorded: The engine's error then.
-        recurred: The engine's error now; None if there is none.
-        start: Step of the checkpoint that the replay started from [step].
+        recorded: The engine's original error.
+        recurred: The engine's error in the repetition; None if there is none.
+        start: Step of the checkpoint from which the replay started [step].
     """
 
     recorded: str
@@ -32,7 +32,7 @@ class FaultReplay:
 
 
 def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
-    """Computes from the newest checkpoint of a run that stopped at a fault, up to the fault. Changes nothing.
+    """Repeats the steps from the newest checkpoint of a run up to the fault that stopped it. Changes nothing.
 
     Raises:
         RecordError: The run recorded no fault, or its checkpoint does not fit.
@@ -51,7 +51,7 @@ def replay_fault(folder: Path | str, threads: int = 0) -> FaultReplay:
         name = f"the checkpoint of {folder}"
         check_head(checkpoint.head, config, manifest.seeds, name)
         step = start = restore(simulation, checkpoint, name).step
-    end = max(manifest.steps_done) + 1  # a fault in a step is found before the step counts as completed
+    end = max(manifest.steps_done) + 1  # a fault is found before its step counts as completed
     try:
         while step < end:
             simulation.run(min(PIECE, end - step))

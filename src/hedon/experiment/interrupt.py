@@ -1,4 +1,4 @@
-"""Counts signals and closed pipes, instead of raising an exception anywhere: the host loop checks the count."""
+"""Counts signals and closed pipes instead of raising exceptions; the host loop checks the count."""
 
 import signal
 from collections.abc import Iterator
@@ -7,23 +7,23 @@ from dataclasses import dataclass
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else []))
 PIPE = 13
-"""The number of the signal SIGPIPE, which Windows does not know. Python ignores it: a write tells of a closed pipe."""
+"""Number of the signal SIGPIPE, which Windows lacks. Python ignores the signal, and a write reveals a closed pipe."""
 _noted: list[int] = []
-"""The signals that this process has counted, so that a command can end with the exit code of the last one."""
+"""Signals that this process has counted; the last one sets the exit code of a command."""
 _counting: list["Interrupts"] = []
-"""Those who count now."""
+"""Active counters."""
 
 
 @dataclass(slots=True)
 class Interrupts:
-    """How many times the user or the system has asked the run to end."""
+    """Number of times that the user or the system has asked the run to end."""
 
     count: int = 0
 
 
 @contextmanager
 def count_interrupts() -> Iterator[Interrupts]:
-    """Counts the signals that ask the run to end, until the block ends. A pipe that was closed before counts too."""
+    """Counts the signals that ask the run to end, until the block ends. A pipe closed before counts too."""
     seen = Interrupts(_noted.count(PIPE))
     with ExitStack() as stack:
         _counting.append(seen)
@@ -31,7 +31,7 @@ def count_interrupts() -> Iterator[Interrupts]:
         try:
             for number in SIGNALS:
                 if number != signal.SIGINT and signal.getsignal(number) is signal.SIG_IGN:
-                    continue  # nohup ignores SIGHUP, and what it starts must live on
+                    continue  # nohup ignores SIGHUP so that its process survives
                 stack.callback(signal.signal, number, signal.signal(number, lambda number, frame: note(number)))
         except ValueError:  # not in the main thread, where Python handles no signals
             pass
@@ -39,12 +39,12 @@ def count_interrupts() -> Iterator[Interrupts]:
 
 
 def note(number: int) -> None:
-    """Counts a signal, or what amounts to one."""
+    """Counts a signal or an equivalent event."""
     _noted.append(number)
     for seen in _counting:
         seen.count += 1
 
 
 def interrupted_code() -> int:
-    """The exit code of a command that a signal has ended early, as shells have it: 128 plus the signal's number."""
+    """Exit code of a command that a signal has ended early, by the shells' convention: 128 plus the signal's number."""
     return 128 + (_noted[-1] if _noted else signal.SIGINT)

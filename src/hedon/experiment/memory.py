@@ -1,4 +1,4 @@
-"""Checks, before a run begins, whether it fits into the memory of this machine, and onto its disk."""
+"""Checks, before a run starts, that it fits into memory and onto the disk."""
 
 import os
 import shutil
@@ -16,19 +16,19 @@ from hedon.record.writer import PART_ROWS
 from hedon.text import brief
 
 CONTROL_GROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
-"""Files with the memory limit of a container, in version 2 and 1 of control groups."""
+"""Files with the memory limit of a container, in versions 2 and 1 of control groups."""
 COLD = "moments and observations"
-"""What may lie in files instead, by HEDON_SCRATCH."""
+"""Purpose of the memory that HEDON_SCRATCH can move into files."""
 LARGEST_VALUE = 8
-"""Bytes of the largest value of a column."""
+"""Size of the largest value of a column [byte]."""
 
 
 class MemoryNeedError(HedonError):
-    """A run that needs more memory, or more room on the disk, than there is."""
+    """A run needs more memory or disk space than is available."""
 
 
 def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, int]:
-    """Most memory that a run needs, by purpose [byte]."""
+    """Peak memory of a run, by purpose [byte]."""
     given = engine_input(config)
     need = _engine.memory_needed(given.settings, len(given.walls), worlds, threads)
     tables = run_tables(columns_of(config)).values()
@@ -38,13 +38,13 @@ def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, in
         "the rest of rollouts": need["rollouts"],
         "physics": need["physics"],
         "rest of the worlds": need["rest"],
-        # Rows wait in memory until their part is full; joining and writing it needs copies.
+        # Rows stay in memory until their part is full; joining and writing the part needs copies.
         "records": 3 * PART_ROWS * LARGEST_VALUE * sum(len(table.columns) for table in tables),
     }
 
 
 def memory_present(limits: Sequence[str] = CONTROL_GROUP_LIMITS) -> int:
-    """Memory that this process can use: of the machine, of its container, or by `ulimit -v` [byte]."""
+    """Memory available to this process, limited by the machine, its container or `ulimit -v` [byte]."""
     present = _engine.physical_memory()
     if (addresses := address_limit()) is not None:
         present = min(present, addresses)
@@ -60,7 +60,7 @@ def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
     """Refuses a run that does not fit.
 
     Raises:
-        MemoryNeedError: It needs more than there is; the message says what for.
+        MemoryNeedError: The run needs more than is available; the message lists the purposes.
     """
     need, present = memory_needed(config, worlds, threads), memory_present()
     slots = sum(own.population.capacity for own in config.species.values())
@@ -82,7 +82,7 @@ def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
 
 
 def _require_room(scratch: str, needed: int, remedy: str) -> None:
-    """MemoryNeedError: the folder is not there, or its disk has too little room."""
+    """Raises MemoryNeedError if the folder does not exist or its disk has too little space."""
     try:
         free = shutil.disk_usage(scratch).free
     except OSError as error:

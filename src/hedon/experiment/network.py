@@ -1,4 +1,4 @@
-"""Where the networks of agents that never learn come from: a file, or those that had learned at the end of a run."""
+"""Networks for agents that never learn, from a file or from the agents that had learned by the end of a run."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from hedon.text import brief
 
 
 def networks_from(text: str, config: Config) -> Networks:
-    """Networks from a source.
+    """Loads networks from a source.
 
     Raises:
         NetworkError: There are none, or they do not fit the config.
@@ -52,7 +52,7 @@ def _of_run(folder: Path) -> Networks:
 
 
 def _learned(checkpoint: Checkpoint, config: Config, name: str, world: int) -> NDArray[np.float32]:
-    """The networks of those of a species who have learned, (agents, parameters)."""
+    """Networks of the agents of a species that have learned, (agents, parameters)."""
     arrays = checkpoint.world(world)
     policies = [species.learning.policy for species in config.species.values()]
     mine = list(config.species).index(name)
@@ -68,7 +68,7 @@ def _learned(checkpoint: Checkpoint, config: Config, name: str, world: int) -> N
 
 
 def _network_shape(config: Config, name: str) -> tuple[int, int, int, int]:
-    """Rays, types that they tell apart, entries of touch, and all others, of what a species' networks read."""
+    """Numbers of a species' network inputs: rays, types that rays distinguish, touch entries, and all other entries."""
     sensor, layout = config.species[name].sensor, layouts(config)[name]
     touches = len(layout.touches) * sensor.touch_sectors
     rest = len(observation_columns(config, name)) - sensor.ray_count * len(layout.sees) - touches

@@ -28,30 +28,29 @@ from hedon.text import brief
 
 @dataclass(frozen=True, slots=True, init=False)
 class RunPlan:
-    """What to run. Everything is checked when a plan is made.
+    """The plan of a run. Everything is checked when a plan is made.
 
     Attributes:
-        config: What the worlds are.
-        seeds: One world per seed; given as any sequence of different whole numbers from 0 to 2^63 − 1.
+        config: Settings of the worlds.
+        seeds: One seed per world, given as any sequence of different integers from 0 to 2^63 − 1.
         steps: Total steps of each world.
-        out: The run's folder; given as a path or a text. It must not hold a run already.
-        threads: Threads to use; 0 for all processors.
+        out: Folder of the run, given as a path or a string. It must not hold a run already.
+        threads: Number of threads; 0 for all processors.
         frames: Steps between two frames; 0 for none.
-        checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window. There is always
-            one at the start and one at the end.
-        founders: Genomes that the worlds begin with; None where they are drawn from the config's laws. The plan's
-            config gets the table's digest.
-        networks: What agents that never learn begin with; None for new networks. The config gets their digest.
-        backend: What computes, as `Simulation` has it: an instruction set or a device; empty for the best instruction
-            set.
-        rules: The texts of all rules in Python. Given are those that the config is pinned to, such as a manifest's;
-            all others are read from their files.
+        checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window. There is always one
+            at the start and one at the end.
+        founders: Initial genomes of the worlds; None to draw them from the config's laws. The plan's config gets the
+            table's digest.
+        networks: Initial networks of agents that never learn; None for new networks. The config gets their digest.
+        backend: Backend, as in `Simulation`: an instruction set or a device; empty for the best instruction set.
+        rules: Texts of all rules in Python. Pass those that the config is pinned to, such as a manifest's; all others
+            are read from their files.
 
     Raises:
         ConfigError: A setting is wrong, or a measure that the config adds.
         FounderError: The founders do not fit the config.
-        NetworkError: The networks do not.
-        RuleError: A rule is not there, or is not the one that the config is pinned to.
+        NetworkError: The networks do not fit the config.
+        RuleError: A rule is missing, or is not the one that the config is pinned to.
         ArgumentError: Another value is wrong.
     """
 
@@ -103,17 +102,17 @@ class RunPlan:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """The state of a run at one moment: what callbacks get, about five times a second and at the end.
+    """The state of a run at one moment, passed to callbacks about five times a second and at the end.
 
     Attributes:
-        first: Step at which the run began, or was last continued.
+        first: Step at which the run started or was last continued.
         step: Steps completed.
         steps: Total steps of each world.
         seconds: Time since the first step after `first` [s].
-        rows: The last row of the table `population` of each world and species, world by world: numbers by column, of
-            the interval that ends at its own `step`.
-        extinct: For each of these rows the step at which the species died out there; None while it lives, and where it
-            was gone before `first`, which its row shows.
+        rows: Last row of the table `population` of each world and species, world by world: numbers by column, for the
+            interval that ends at the row's own `step`.
+        extinct: For each of these rows, the step at which the species died out there; None while it lives, and if it
+            was gone before `first`, as its row shows.
         window: Steps of a window; agents learn at its end.
     """
 
@@ -127,11 +126,11 @@ class Moment:
 
 
 Callback = Callable[[Moment], object]
-"""What hears how a run goes on; an exception that it raises ends the run."""
+"""A function that gets the progress of a run; an exception that it raises ends the run."""
 
 
 def together(callbacks: Iterable[Callback]) -> Callback | None:
-    """Several callbacks as one, in their order; None for none.
+    """Combines several callbacks, in order; None for none.
 
     Raises:
         ArgumentError: One is not a function of a moment.
@@ -153,7 +152,7 @@ def together(callbacks: Iterable[Callback]) -> Callback | None:
 
 
 def _without_caller(config: Config) -> Config:
-    """The config. ArgumentError: a species waits for actions, which a run has nobody to give."""
+    """Returns the config. Raises ArgumentError if a species waits for actions, since no program gives them in a run."""
     for name in config.driven:
         place = f"species.{name}.learning.policy" if len(config.species) > 1 else "learning.policy"
         raise ArgumentError(
@@ -177,7 +176,7 @@ def _with_founders(config: Config, founders: Founders | None) -> Config:
 
 
 def _with_networks(config: Config, networks: Networks | None) -> Config:
-    """The config with the digest of the networks that its agents begin with."""
+    """The config with the digest of its agents' initial networks."""
     if networks is not None:
         networks.require(config)
         return config.with_("world.networks", networks.digest)
@@ -190,12 +189,12 @@ def _with_networks(config: Config, networks: Networks | None) -> Config:
 
 
 def default_folder(config: Config, seeds: Sequence[int]) -> Path:
-    """The default folder of a run: runs/NAME-FIDELITY-sSEEDS, with a number if that exists already."""
+    """Default folder of a run: runs/NAME-FIDELITY-sSEEDS, with a number if that exists already."""
     return free_folder(Path("runs") / "-".join((config.name, config.fidelity, seed_span(seeds))))
 
 
 def seed_span(seeds: Sequence[int]) -> str:
-    """Seeds as part of a folder's name: "s3", "s1-5", or how many there are if they are not consecutive."""
+    """Seeds as part of a folder's name: "s3", "s1-5", or their number if they are not consecutive."""
     if len(seeds) == 1:
         return f"s{seeds[0]}"
     if tuple(seeds) == tuple(range(seeds[0], seeds[-1] + 1)):
@@ -210,13 +209,13 @@ def require_measures(config: Config) -> None:
         ConfigError: An expression is wrong, or a name is taken.
     """
     if config.measure:
-        from hedon.measure.world_measure import own_measures  # loads what reads records
+        from hedon.measure.world_measure import own_measures  # imported late: it loads the record readers
 
         own_measures(config)
 
 
 def free_folder(path: Path, taken: Collection[Path] = ()) -> Path:
-    """A path that does not exist and is not in `taken`: this one, or this one with a number after it."""
+    """A path that neither exists nor is in `taken`: this one, or this one with a number after it."""
     folder, number = path, 2
     while folder.exists() or folder in taken:
         folder, number = path.with_name(f"{path.name}-run{number}"), number + 1

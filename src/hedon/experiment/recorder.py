@@ -1,4 +1,4 @@
-"""Copies data from the engine into the records: deaths, intervals, frames, the living, checkpoints."""
+"""Copies data from the engine into the records: deaths, intervals, frames, living agents, checkpoints."""
 
 import time
 from collections.abc import Sequence
@@ -23,21 +23,22 @@ from hedon.record.writer import Writer
 FLUSH_SECONDS = 30.0
 """Time after which rows are written, so that readers see them [s]."""
 FLUSH_GROWTH = 0.005
-"""The same as a share of the session so far. A part costs about 10 kB for its footer, and an open file for each
-reader. So parts are written less often as a run gets longer: a run of many hours has some hundreds of them."""
+"""The same as a share of the session so far. Each part costs about 10 kB for its footer, and each reader an open file,
+so parts become rarer as a run gets longer: a run of many hours has some hundreds of them."""
 
 PACE = 19
-"""Least time between two checkpoints, in that which the first of them took to save."""
+"""Minimum time between two checkpoints, as a multiple of the time that saving the earlier one took."""
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where a session begins: at step 0, or at a checkpoint.
+    """Start of a session, at step 0 or at a checkpoint.
 
     Attributes:
         step: Steps completed.
         seconds: Time spent on steps before [s].
-        sampled: What the next rows of the table `population` count from, one per world and species; empty at step 0.
+        sampled: Counts from which the next rows of the table `population` start, one per world and species; empty at
+            step 0.
     """
 
     step: int = 0
@@ -49,12 +50,12 @@ class Recorder:
     """Writes the records of a simulation.
 
     Args:
-        simulation: In the state of `start`.
-        writer: Where the rows go.
+        simulation: Simulation in the state of `start`.
+        writer: Writer of the rows.
         frames: Steps between two frames; stored in checkpoints.
-        start: Where the session begins.
+        start: Start of the session.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
-        worlds: That are recorded; None for all.
+        worlds: Worlds to record; None for all.
     """
 
     def __init__(
@@ -68,7 +69,7 @@ class Recorder:
     ) -> None:
         self.simulation = simulation
         self.worlds = list(simulation.worlds if worlds is None else worlds)
-        self.left: list[Rows] = []  # the living of worlds that have left, as they were then
+        self.left: list[Rows] = []  # living agents of worlds that have left, as they were then
         self.writer = writer
         self.frames = frames
         sampled = [(world, species) for world in self.worlds for species in range(len(world.config.species))]
@@ -82,13 +83,13 @@ class Recorder:
         self.shown = False
         self.checkpoint_seconds = checkpoint_seconds
         self.next_checkpoint = self.begun + checkpoint_seconds
-        self.saved = start.step if checkpoint_path(writer.folder, start.step).exists() else None  # what it goes on from
+        self.saved = start.step if checkpoint_path(writer.folder, start.step).exists() else None  # what it starts from
 
     def deaths(self, *, partial: bool = False) -> None:
-        """Writes the agents that died since the last call. The engine has little room for them, so call it often.
+        """Writes the agents that died since the last call. The engine can store only a few, so call it often.
 
         Raises:
-            EngineError: It was called too seldom, and `partial` is false: some are lost.
+            EngineError: Too many agents died since the last call, so some are lost, and `partial` is false.
         """
         for world in self.worlds:
             lives = world._take_deaths(partial=partial)
@@ -108,23 +109,23 @@ class Recorder:
             self.samplers[i].advance()
         if grown:
             self.writer.append("population", *(self.rows[i] for i in grown))
-        if not self.shown:  # write the first rows immediately, so that a reader sees that the run has begun
+        if not self.shown:  # write the first rows immediately, so that a reader sees that the run has started
             self.living()
             self.writer.flush()
             self.shown = True
 
     def living(self) -> None:
-        """Writes all rows so far and the living, so that readers see this moment. All deaths must be written before."""
+        """Writes all rows so far and the living agents, so that readers see this moment. Write all deaths before."""
         now = time.perf_counter()
         self.flush_due = now + max(FLUSH_SECONDS, FLUSH_GROWTH * (now - self.begun))
         rows = [*self.left]
         for world in self.worlds:
-            with suppress(EngineError):  # a world that stopped since its slots are inconsistent
+            with suppress(EngineError):  # of a world whose slots were found inconsistent
                 rows.append(agent_rows(world, world.agents()))
         self.writer.replace_living(*rows)
 
     def leave(self, world: World) -> None:
-        """Ends the records of one world, while others go on."""
+        """Ends the records of one world, while others continue."""
         self.deaths()
         self.interval()
         self.left.append(agent_rows(world, world.agents()))
@@ -133,25 +134,26 @@ class Recorder:
         self.worlds.remove(world)
 
     def frame(self) -> None:
-        """Writes every agent and food of every world that is not extinct, as they are now."""
+        """Writes the current state of every agent and food of every world that is not extinct."""
         rows = [each for world in self.worlds if not world.extinct for each in frame_rows(world)]
         if rows:
             self.writer.append("frames", *rows)
 
     @property
     def checkpoint_due(self) -> bool:
-        """Whether it is time for a checkpoint. Saving takes at most a twentieth of the time: those of large worlds are
-        further apart, unless every chance is asked for (0 s)."""
+        """Whether a checkpoint is due. Saving takes at most a twentieth of the time, so large worlds have fewer
+        checkpoints, unless 0 s asks for one at every opportunity.
+        """
         return time.perf_counter() >= self.next_checkpoint
 
     def checkpoint(self, step: int, seconds: float) -> None:
-        """Saves a checkpoint to continue from, unless there is one. All rows are on disk then.
+        """Saves a checkpoint, unless this step has one. All rows are then on disk.
 
         Deaths and frames of this step must be written before.
 
         Args:
-            step: Completed by every world that lives [step].
-            seconds: Spent on steps so far, over all sessions [s].
+            step: Steps completed by every world that is alive [step].
+            seconds: Time spent on steps so far, over all sessions [s].
         """
         self.living()
         if step == self.saved:
@@ -165,7 +167,7 @@ class Recorder:
             self.next_checkpoint += max(self.checkpoint_seconds, PACE * (now - begun))
 
     def fault(self, seconds: float) -> None:
-        """Saves the worlds when one of them has stopped at a fault, and the agents that died before it."""
+        """Saves the worlds after one of them has stopped at a fault, and the agents that died before it."""
         self.deaths(partial=True)
         step = max(world.step for world in self.worlds)
         self.writer.save_fault(self._head(step, seconds), self._fill)
@@ -174,7 +176,7 @@ class Recorder:
         simulation = self.simulation
         digests = [""] * len(self.worlds)
         for i, world in enumerate(self.worlds):
-            with suppress(EngineError):  # a world that stopped since its slots are inconsistent
+            with suppress(EngineError):  # of a world whose slots were found inconsistent
                 digests[i] = world.digest()
         return CheckpointHead(
             step=step,
@@ -195,12 +197,12 @@ class Recorder:
                 self.simulation.engine.save_to(world.index, partial(_begin, out, world.row), out.piece)
 
     def moment(self, step: int, steps: int, seconds: float) -> Moment:
-        """What a display shows.
+        """The state that a display shows.
 
         Args:
-            step: Completed so far [step].
-            steps: Of the whole run [step].
-            seconds: Spent since `first` [s].
+            step: Steps completed so far [step].
+            steps: Total steps of the run [step].
+            seconds: Time spent since `first` [s].
         """
         extinct = tuple(map(self._extinct_step, self.samplers))
         window = self.simulation.config.world.rollout_steps

@@ -1,4 +1,4 @@
-"""Computes a run again, and compares its records and the worlds at its end."""
+"""Repeats a run, and compares its records and the worlds at its end."""
 
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -18,10 +18,10 @@ from hedon.record.reader import Run, open_run
 def replay_run(
     folder: Path | str, threads: int = 0, callbacks: Iterable[Callback] = ()
 ) -> tuple[tuple[Finding, ...], str]:
-    """Computes a run again, from its oldest checkpoint to its end, and compares.
+    """Repeats a run from its oldest checkpoint to its end, and compares both.
 
     Returns:
-        What differs, and one sentence on what was compared.
+        The differences, and a sentence on what was compared.
     """
     folder = Path(folder)
     run = open_run(folder)
@@ -49,7 +49,7 @@ def _compare(run: Run, again: Run, manifest: Manifest, start: int) -> Iterator[F
     for world, (old, new) in enumerate(zip(run.manifest.world_digests, manifest.world_digests, strict=True)):
         if old != new:
             yield Finding("manifest.json", f"world {world}: computed again, its digest is {new}, not {old}")
-    # A world that died out in the checkpoint's window, before it, has its row of that window in both.
+    # If a world died out in the checkpoint's window, before the checkpoint, both have its row of that window.
     window = start - start % run.config.world.rollout_steps
     later = pl.col("death_step").is_null() | (pl.col("death_step") > start)
     tables = {

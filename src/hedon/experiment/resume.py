@@ -1,4 +1,4 @@
-"""Continues a run that was interrupted, killed, or finished; with the same bits as if it had never stopped."""
+"""Continues a run that was interrupted, killed or finished, with the same bits as if it had never stopped."""
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
@@ -38,10 +38,10 @@ class Resumption:
     """A run that is ready to continue.
 
     Attributes:
-        plan: What to run, with the total steps.
-        manifest: The manifest from the last session.
+        plan: Plan of the run, with the total steps.
+        manifest: Manifest from the last session.
         checkpoint: Where it continues; None for a run that was killed before its first checkpoint.
-        notes: What the user should know, such as a damaged checkpoint or a changed source.
+        notes: Messages for the user, such as on a damaged checkpoint or a changed source.
     """
 
     plan: RunPlan
@@ -51,7 +51,7 @@ class Resumption:
 
     @property
     def step(self) -> int:
-        """The step at which it continues."""
+        """Step at which it continues."""
         return self.checkpoint.head.step if self.checkpoint else 0
 
 
@@ -62,21 +62,21 @@ def lock(
     """Locks a run's folder and plans how the run continues. Changes nothing else; see `continue_run`.
 
     Args:
-        folder: Of the run.
-        steps: Steps of each world in all; None for those of the last session.
-        threads: Threads to use; 0 for all processors. Changes no result.
+        folder: Folder of the run.
+        steps: Total steps of each world; None for the last session's total.
+        threads: Number of threads; 0 for all processors. Changes no result.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
 
     Raises:
-        RecordError: It is not a run, is in use, has no steps left, or its checkpoint does not fit; the message says
-            why.
+        RecordError: The folder is not a run or is in use, no steps are left, or the checkpoint does not fit; the
+            message gives the reason.
         ConfigError: Its config cannot be read.
         FounderError: Its table of founders cannot be read.
         NetworkError: Its file of networks cannot be read.
         ArgumentError: A number is out of bounds.
     """
     folder = argument.folder("folder", folder)
-    open_run(folder)  # before the lock, because the lock makes the folder
+    open_run(folder)  # before the lock, which creates the folder
     with FolderLock(folder):
         manifest = open_run(folder).manifest
         config = load_config(folder / CONFIG)
@@ -116,19 +116,19 @@ def resume(
     """Continues a run from its newest undamaged checkpoint. Later records are removed and computed again.
 
     Args:
-        folder: Of the run.
-        steps: Steps of each world in all; None for those of the last session.
-        threads: Threads to use; 0 for all processors. Changes no result.
+        folder: Folder of the run.
+        steps: Total steps of each world; None for the last session's total.
+        threads: Number of threads; 0 for all processors. Changes no result.
         callbacks: Functions of a `Moment`, called about five times a second and at the end.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
 
     Returns:
-        The manifest as it was saved at the end.
+        The manifest as saved at the end.
 
     Raises:
-        RecordError: As `lock`; or the folder cannot be written.
-        ArgumentError: As `lock`.
-        MemoryNeedError: It needs more memory than there is.
+        RecordError: As in `lock`, or the folder cannot be written.
+        ArgumentError: As in `lock`.
+        MemoryNeedError: The run needs more memory than there is.
         EngineError: A world reports an error.
     """
     with lock(folder, steps, threads, checkpoint_seconds) as found:
@@ -136,11 +136,11 @@ def resume(
 
 
 def make(plan: RunPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
-    """Makes the run of a plan: begins it, goes on with it, or only reads it where it is finished.
+    """Completes the run of a plan: starts it, continues it, or only reads it if it is finished.
 
     Raises:
         RecordError: The folder holds a run with other settings, founders or seeds.
-        HedonError: As `run` and `resume`.
+        HedonError: As in `run` and `resume`.
     """
     if not holds_run(plan.out):
         return run(plan, callbacks)
@@ -153,21 +153,21 @@ def make(plan: RunPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
 
 
 def is_finished(manifest: Manifest, steps: int) -> bool:
-    """Whether a run has its steps, or all its worlds have died out.
+    """Whether a run has completed its steps, or all its worlds have died out.
 
     Args:
-        manifest: Of the run.
-        steps: That it should have [step].
+        manifest: Manifest of the run.
+        steps: Number of steps that it should have [step].
     """
     over = bool(manifest.extinct_steps) and None not in manifest.extinct_steps
     return manifest.status == "finished" and (over or max(manifest.steps_done) >= steps)
 
 
 def require_setting(folder: Path, config_digest: str, seeds: Sequence[int] | None = None) -> None:
-    """Refuses a folder that holds a run of another setting.
+    """Refuses a folder that holds a run of another condition.
 
     Raises:
-        RecordError: It has other settings, founders or seeds.
+        RecordError: The run has other settings, founders or seeds.
     """
     if not holds_run(folder):
         return
@@ -182,11 +182,11 @@ def continue_run(found: Resumption, callbacks: Iterable[Callback] = ()) -> Manif
     """Continues a run that `lock` has locked; see `resume`.
 
     Returns:
-        The manifest as it was saved at the end.
+        The manifest as saved at the end.
 
     Raises:
         RecordError: The checkpoint does not fit, or the folder cannot be written.
-        MemoryNeedError: It needs more memory than there is.
+        MemoryNeedError: The run needs more memory than there is.
         EngineError: A world reports an error.
     """
     plan, checkpoint = found.plan, found.checkpoint
@@ -207,7 +207,7 @@ def continue_run(found: Resumption, callbacks: Iterable[Callback] = ()) -> Manif
 
 
 def _device_notes(manifest: Manifest) -> list[str]:
-    """What is to be known if the run's device cannot go on with it."""
+    """A note if the run's device cannot be used to continue it."""
     backend = manifest.backend
     if backend is None or not is_device(backend) or os.environ.get(BACKEND_VARIABLE):
         return []
@@ -243,7 +243,7 @@ def _source_notes(manifest: Manifest) -> list[str]:
 
 
 def _rule_notes(manifest: Manifest) -> list[str]:
-    """Notes on the rules whose files have changed since, which changes nothing."""
+    """Notes on rules whose files have changed since, which changes nothing."""
     return [
         f"{path} has changed since: continuing with the text that the manifest keeps "
         "(`hedon branch --set` goes on with another)"

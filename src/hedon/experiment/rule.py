@@ -1,8 +1,7 @@
-"""Rules in Python at native speed: a function of a file, compiled by Numba, that the engine calls once per step.
+"""Rules in Python at native speed: functions from a file, compiled by Numba and called by the engine once per step.
 
-A config names a rule as FILE.py:NAME. A run pins it, FILE.py:NAME@DIGEST, so that its config and its checkpoints say
-which text it was. Its manifest keeps the text, and whatever goes on with the run takes it from there: the file may be
-gone.
+A config names a rule as FILE.py:NAME. A run pins it as FILE.py:NAME@DIGEST, so that its config and checkpoints identify
+the text. The run's manifest keeps the text, and continuations read it there, even if the file is gone.
 """
 
 import hashlib
@@ -33,24 +32,24 @@ from hedon.record.manifest import RuleSource, load_manifest
 from hedon.text import brief
 
 MAX_BYTES = 1_000_000
-"""Size of the largest file of a rule [byte]: the manifest of a run keeps the whole text."""
+"""Maximum size of a rule's file [byte], since the manifest of a run keeps the whole text."""
 
 
 class RuleError(HedonError):
-    """A rule that is not there, is not the one that a run began with, or cannot be used."""
+    """A rule is missing, is not the one that a run started with, or cannot be used."""
 
 
 @dataclass(frozen=True)
 class Rule:
-    """A rule that pays the agents of a species, or gives the chance that they die or have a child.
+    """A rule that gives agents of a species their reward, or their probability of death or of a child.
 
     Attributes:
         species: Name of the species.
         use: "reward", "hazard" or "birth".
-        source: Where it comes from, and its text.
+        source: Origin and text of the rule.
         columns: Fields of the record that the engine fills for each agent.
-        genes: Those that are genes which the rule may read.
-        neutral: Those that are neutral genes, which it may not: what it reads would no longer be neutral.
+        genes: Fields that are genes which the rule may read.
+        neutral: Fields that are neutral genes, which the rule may not read, as they would no longer be neutral.
     """
 
     species: str
@@ -62,10 +61,10 @@ class Rule:
 
     @cached_property
     def function(self) -> Callable[[Any], float]:
-        """The function itself, in plain Python.
+        """The function in plain Python.
 
         Raises:
-            RuleError: The file fails, or has no such function, or it takes more than an agent.
+            RuleError: The file fails, has no such function, or the function takes more than an agent.
         """
         scope: dict[str, Any] = {"__name__": "hedon_rule", "__file__": self.source.file}
         self._refuse_unpinned()
@@ -73,10 +72,10 @@ class Rule:
             exec(compile(self.source.text, self.source.file, "exec"), scope)
         except KeyboardInterrupt:
             raise
-        except BaseException as error:  # a file may raise anything, also what is no Exception
+        except BaseException as error:  # a file may raise anything, not only an Exception
             raise self._error(failure(error, self.source.file)) from error
         found = scope.get(self.source.name)
-        function = getattr(found, "py_func", found)  # of a function that Numba has compiled already
+        function = getattr(found, "py_func", found)  # unwraps a function that Numba has already compiled
         if found is not None and not isinstance(function, FunctionType):
             raise self._error(f"{self.source.name} is {brief(repr(found), 40)}: a rule is a function, written with def")
         if not isinstance(function, FunctionType):
@@ -95,19 +94,19 @@ class Rule:
         return function
 
     def _refuse_unpinned(self) -> None:
-        """RuleError: the file takes from elsewhere what no run keeps; told before any of it is run."""
-        with suppress(SyntaxError, ValueError):  # told when the file is run
+        """Raises RuleError, before running the file, if it uses something from elsewhere that no run keeps."""
+        with suppress(SyntaxError, ValueError):  # reported when the file is run
             if found := unpinned(self.source.text):
                 raise self._error(found)
 
     def answers(self, records: NDArray[Any]) -> NDArray[np.float64]:
-        """What the rule answers, computed in plain Python.
+        """Results of the rule, computed in plain Python.
 
         Args:
-            records: (agents, columns) float64; what the rule keeps in its memory is changed in place.
+            records: (agents, columns) float64; memory that the rule writes is changed in place.
 
         Returns:
-            (agents,) rewards or chances.
+            (agents,) rewards or probabilities.
         """
         rows = records.view(self._dtype).view(np.recarray)[:, 0]
         return np.array([float(self.function(row)) for row in rows])
@@ -137,7 +136,7 @@ class Rule:
         try:
             with _bounds_checked(numba.core.config):
                 return numba.cfunc(types)(answer)
-        except KeyError as error:  # a field of the record that is not there
+        except KeyError as error:  # a field that the record does not have
             name = str(error.args[0])
             self._refuse_neutral(f"'{name}'", error)
             near = nearest(name, self._seen)
@@ -147,12 +146,12 @@ class Rule:
             raise self._error(f"an agent has no {name}{hint}; it has {', '.join(self._seen)}") from error
         except KeyboardInterrupt:
             raise
-        except BaseException as error:  # Numba raises what its parts raise, not only its own errors
+        except BaseException as error:  # Numba raises errors of its dependencies too
             self._refuse_neutral(" ".join(str(error).split()), error)
             raise self._error(cause(error, self.source.file)) from error
 
     def _refuse_neutral(self, said: str, error: BaseException) -> None:
-        """RuleError: a field that was said to be missing is a neutral gene."""
+        """Raises RuleError if a field reported as missing is a neutral gene."""
         for name in self.neutral:
             if f"'{name}'" in said:
                 raise self._error(
@@ -170,7 +169,7 @@ class Rule:
 
     @property
     def _dtype(self) -> np.dtype[Any]:
-        """A record as the engine fills it, of which the rule sees only a part."""
+        """Data type of a record as the engine fills it; the rule sees only a part."""
         number = np.dtype(np.float64)
         return np.dtype(
             {
@@ -186,7 +185,7 @@ def rules(config: Config, kept: Sequence[RuleSource] = ()) -> tuple[Rule, ...]:
     """The rules of a config.
 
     Raises:
-        RuleError: A file is not there or cannot be read, or is not the one that the config was pinned to.
+        RuleError: A file is missing or cannot be read, or is not the one that the config was pinned to.
     """
     return tuple(
         _rule(config, name, use, _source(getattr(species, use).rule, kept))
@@ -203,7 +202,7 @@ def _rule(config: Config, name: str, use: str, source: RuleSource) -> Rule:
 
 
 def pinned(config: Config, found: Sequence[Rule]) -> Config:
-    """The config with the names and digests of its rules' files, without the folders that they are in."""
+    """The config with the names and digests of its rules' files, without their folders."""
     agents = dict(config.species)
     for rule in found:
         own = agents[rule.species]
@@ -213,13 +212,13 @@ def pinned(config: Config, found: Sequence[Rule]) -> Config:
 
 
 def rules_beside(source: str | Path) -> tuple[RuleSource, ...]:
-    """The texts of rules that a run keeps, from the path of its config; none if no run has this file."""
+    """Texts of the rules kept by a run, from the path of its config; empty if no run has this file."""
     manifest = Path(source).parent / MANIFEST
     return load_manifest(manifest.parent).rules if Path(source).name == CONFIG and manifest.is_file() else ()
 
 
 def changed_files(kept: Sequence[RuleSource]) -> tuple[str, ...]:
-    """The files of rules that have another text by now. One that cannot be read is not among them."""
+    """Files of rules whose text has changed since. Unreadable files are omitted."""
 
     def is_changed(source: RuleSource) -> bool:
         try:
@@ -232,7 +231,7 @@ def changed_files(kept: Sequence[RuleSource]) -> tuple[str, ...]:
 
 @contextmanager
 def _bounds_checked(settings: Any) -> Iterator[None]:
-    """Lets Numba compile functions that check their indices, also those that a rule calls."""
+    """Makes Numba compile functions with checks of their indices, including functions that a rule calls."""
     before, settings.BOUNDSCHECK = settings.BOUNDSCHECK, 1
     try:
         yield

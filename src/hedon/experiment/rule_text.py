@@ -1,4 +1,4 @@
-"""What the text of a rule shows before it is compiled, and what a failure to compile it means, in one line."""
+"""Checks the text of a rule before it is compiled, and explains failures to compile it, in one line."""
 
 import ast
 import re
@@ -10,12 +10,12 @@ from typing import Any, TypeGuard
 from hedon.text import brief
 
 MEMORY = "memory_"
-"""Fields of an agent that a rule may write begin so."""
+"""Prefix of the agent's fields that a rule may write."""
 SEEDED = ("numpy.random.default_rng", "random.Random")
-"""Sources of chance that give the same in every run, if they are called with a number."""
+"""Random number generators that are the same in every run if they are called with a number."""
 CHANCE = ("random", "numpy.random", "secrets", "uuid", "os.urandom", "os.getrandom")
 CLOCKS = ("time", "datetime")
-"""Modules and functions by which the same run would come out otherwise."""
+"""Modules and functions that would make repetitions of a run differ."""
 READERS = ("read_text", "read_bytes", "load", "loadtxt", "genfromtxt", "fromfile", "memmap", "read_csv")
 """Methods and functions of modules that read files."""
 _NOISE = re.compile(r"Failed in |During: |File \"|There (is|are) \d+ candidate|>>>|<source|$")
@@ -23,10 +23,10 @@ _RETURNED = re.compile(r"setitem\(array\(float64, 1d, C\), int64, (.+)\)")
 
 
 def refusal(text: str, name: str, columns: Collection[str]) -> str:
-    """What a rule does that no rule may: it writes what is not a memory, or asks for chance or the time.
+    """Why a rule is not allowed: it writes something other than memory, or uses random numbers or the time.
 
     Returns:
-        The line and what is wrong there; empty if nothing is.
+        The line and the reason; empty if the rule is allowed.
     """
     tree = ast.parse(text)
     places = _imported(tree)
@@ -49,10 +49,10 @@ def refusal(text: str, name: str, columns: Collection[str]) -> str:
 
 
 def unpinned(text: str) -> str:
-    """What a rule takes from elsewhere that no run keeps, or under names that cannot be judged.
+    """What a rule takes from elsewhere that no run keeps, or under names that cannot be checked.
 
     Returns:
-        The line and what is wrong there; empty if nothing is.
+        The line and the reason; empty if there is nothing.
 
     Raises:
         SyntaxError, ValueError: Python cannot read the file.
@@ -75,7 +75,7 @@ def unpinned(text: str) -> str:
 
 
 def _reads_file(node: ast.AST) -> TypeGuard[ast.Call]:
-    """Whether it calls `open`, or a method by which files are read."""
+    """Whether a node calls `open` or a method that reads files."""
     if not isinstance(node, ast.Call):
         return False
     called = node.func
@@ -85,7 +85,7 @@ def _reads_file(node: ast.AST) -> TypeGuard[ast.Call]:
 
 
 def _is_installed(module: str) -> bool:
-    """Whether a module is Python's own or of an installed package, rather than a file that a user edits."""
+    """Whether a module belongs to Python or an installed package, rather than being a user's file."""
     if not module:  # of a relative import
         return False
     if module in sys.stdlib_module_names or module in ("hedon", "hedon_studies"):
@@ -93,15 +93,15 @@ def _is_installed(module: str) -> bool:
     try:
         spec = find_spec(module)
     except (ImportError, ValueError):
-        return True  # it is not there: Python says so when it runs the file
-    if spec is None:  # it is not there either
+        return True  # missing: Python reports it when it runs the file
+    if spec is None:  # missing, too
         return True
     places = [*(spec.submodule_search_locations or ()), spec.origin or ""]
     return any("site-packages" in place or "dist-packages" in place for place in places)
 
 
 def failure(error: BaseException, file: str) -> str:
-    """Why Python cannot read the file of a rule, or why it fails there."""
+    """Why Python cannot read a rule's file, or why the file fails."""
     line, said = None, brief(repr(error))
     if isinstance(error, SyntaxError):
         line, said = error.lineno, f"{type(error).__name__}: {error.msg}"
@@ -113,7 +113,7 @@ def failure(error: BaseException, file: str) -> str:
 
 
 def cause(error: BaseException, file: str) -> str:
-    """Why Numba cannot compile a rule, without the ways by which it found out."""
+    """Why Numba cannot compile a rule, without Numba's trace."""
     text = str(error)
     own = re.findall(rf'File "(?:[^"]*/)?{re.escape(file)}", line (\d+)|\b{re.escape(file)} \((\d+)\)', text)
     returned = _RETURNED.search(text)
@@ -129,7 +129,7 @@ def cause(error: BaseException, file: str) -> str:
 
 
 def _reached(tree: ast.Module, name: str) -> Iterator[Any]:
-    """All nodes of what a name of the file is made of, and of what that names in turn."""
+    """Yields all nodes that define a name of the file, and those that define the names that these use."""
     bound: dict[str, list[ast.AST]] = {}
     for statement in tree.body:
         for each in _names(statement):
@@ -145,7 +145,7 @@ def _reached(tree: ast.Module, name: str) -> Iterator[Any]:
 
 
 def _names(statement: ast.AST) -> set[str]:
-    """The names that a statement of the file binds there, without those within functions and classes."""
+    """Names that a statement binds in the file, without those within functions and classes."""
     if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
         return {statement.name}
     own = {statement.id} if isinstance(statement, ast.Name) and isinstance(statement.ctx, ast.Store) else set()
@@ -153,7 +153,7 @@ def _names(statement: ast.AST) -> set[str]:
 
 
 def _imported(tree: ast.Module) -> dict[str, str]:
-    """What names of the file stand for, as `np` for `numpy`."""
+    """What imported names of the file stand for, such as `np` for `numpy`."""
     places = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -167,7 +167,7 @@ def _imported(tree: ast.Module) -> dict[str, str]:
 
 
 def _dotted(node: ast.AST, places: dict[str, str]) -> str | None:
-    """The full name that a node reads, None if it is none of a module."""
+    """Full name that a node reads; None if it is not from a module."""
     if isinstance(node, ast.Attribute):
         before = _dotted(node.value, places)
         return None if before is None else f"{before}.{node.attr}"
@@ -179,7 +179,7 @@ def _source_of(path: str) -> str:
 
 
 def _is_seeded(node: ast.AST, places: dict[str, str]) -> bool:
-    """Whether it makes a source of chance from a number."""
+    """Whether a node creates a random number generator from a number."""
     return (
         isinstance(node, ast.Call)
         and _dotted(node.func, places) in SEEDED
@@ -188,7 +188,7 @@ def _is_seeded(node: ast.AST, places: dict[str, str]) -> bool:
 
 
 def _written(node: ast.AST) -> str:
-    """The field that a node writes, as `energy` for `agent.energy = 1` and `agent["energy"] = 1`; empty for none."""
+    """Field that a node writes, such as `energy` for `agent.energy = 1` and `agent["energy"] = 1`; empty for none."""
     if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
         return node.attr
     if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store) and isinstance(node.slice, ast.Constant):

@@ -24,7 +24,7 @@ from hedon.record.writer import Writer
 from hedon.text import brief
 
 PIECE_SECONDS = 0.2
-"""Longest time in the engine between two checks for Ctrl-C [s]; a device is not disturbed within a window."""
+"""Longest time in the engine between two checks for Ctrl-C [s]; a device is not interrupted within a window."""
 
 
 def run(plan: RunPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
@@ -38,13 +38,13 @@ def run(plan: RunPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
         callbacks: Functions of a `Moment`, called about five times a second and at the end.
 
     Returns:
-        The manifest as it was saved at the end.
+        The manifest as saved at the end.
 
     Raises:
-        ArgumentError: The plan is not a `RunPlan`, or a callback not a function.
-        RecordError: The folder holds a run already, is in use, or cannot be written.
-        MemoryNeedError: It needs more memory than there is.
-        EngineError: A world reports an error; what was recorded before stays readable.
+        ArgumentError: The plan is not a `RunPlan`, or a callback is not a function.
+        RecordError: The folder already holds a run, is in use, or cannot be written.
+        MemoryNeedError: The run needs more memory than there is.
+        EngineError: A world reports an error; earlier records stay readable.
     """
     if not isinstance(plan, RunPlan):
         raise ArgumentError(f"plan: must be a RunPlan, not {brief(repr(plan))}")
@@ -57,11 +57,11 @@ def run(plan: RunPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
 
 
 def set_initial_state(simulation: Simulation, plan: RunPlan) -> None:
-    """Gives the founders of a new simulation the genomes and the networks that the plan has for them.
+    """Gives the founders of a new simulation the plan's genomes and networks.
 
     Raises:
         FounderError: The founders do not fit the simulation.
-        NetworkError: The networks do not.
+        NetworkError: The networks do not fit the simulation.
     """
     if plan.founders is not None:
         simulation.set_founders(plan.founders)
@@ -77,13 +77,13 @@ def start_run(
     callback: Callback | None,
     interrupted: Interrupts,
 ) -> Manifest:
-    """Locks and makes the folder of a run, and runs it; see `run`.
+    """Creates and locks the folder of a run, and runs it; see `run`.
 
     Returns:
-        The manifest as it was saved at the end.
+        The manifest as saved at the end.
 
     Raises:
-        RecordError: The folder holds a run already, is in use, or cannot be written.
+        RecordError: The folder already holds a run, is in use, or cannot be written.
         EngineError: A world reports an error.
     """
     with FolderLock(plan.out), Writer(plan.out, dump_toml(plan.config), manifest, beginning=_beginning(plan)) as writer:
@@ -91,7 +91,7 @@ def start_run(
 
 
 def _beginning(plan: RunPlan) -> dict[str, bytes]:
-    """The files that hold what the worlds begin with, besides the config."""
+    """Files, besides the config, that define the initial state of the worlds."""
     files = {}
     if plan.founders is not None:
         files[FOUNDERS] = plan.founders.content
@@ -112,7 +112,7 @@ def advance(
     """Advances a simulation to the end of its plan, or until it is interrupted or extinct, and records it; see `run`.
 
     Returns:
-        The manifest as it was saved at the end.
+        The manifest as saved at the end.
 
     Raises:
         EngineError: A world reports an error; its state is in the folder `fault`, unless that cannot be written either.
@@ -132,7 +132,8 @@ def advance(
                 recorder.interval()
             if plan.frames and step % plan.frames == 0:
                 recorder.frame()
-            # Within a window a checkpoint would hold rollouts, which are larger than all else: only if asked to end.
+            # Within a window a checkpoint would hold rollouts, which are larger than all else, so save one only if
+            # asked to end.
             if interrupted.count > heard or (step % window == 0 and recorder.checkpoint_due):
                 recorder.checkpoint(step, seconds)
                 heard = interrupted.count
@@ -161,7 +162,7 @@ def advance(
 
 
 def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interrupts) -> Iterator[int]:
-    """Advances to each step at which something must be done, and yields it."""
+    """Advances to each step that needs an action, and yields it."""
     window = plan.config.world.rollout_steps
     on_device = simulation.engine.device_count > 0
     piece = 64
@@ -176,7 +177,7 @@ def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interr
         simulation.run(steps)
         seconds = max(time.perf_counter() - begun, 1e-6)
         wanted = window if on_device else min(steps * PIECE_SECONDS / seconds, 4 * piece)
-        # The engine keeps deaths until they are read: make pieces so short that deaths fill an eighth of its room.
+        # The engine keeps deaths until they are read: keep pieces so short that deaths fill an eighth of its space.
         full = 8 * max(world.waiting_deaths for world in simulation.worlds)
         piece = max(1, int(min(wanted, steps / full if full else 4 * steps)))
         step += steps

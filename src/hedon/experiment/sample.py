@@ -1,4 +1,4 @@
-"""Makes rows of the records, and the data for the picture of the end, from a world."""
+"""Rows of the records, and data for the final picture, from a world."""
 
 from typing import Any
 
@@ -19,9 +19,9 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     """Rows of the table `agents`.
 
     Args:
-        world: The world that they live or lived in.
-        lives: A value per agent by name, (agents,), with `genome` (agents, genes) and `eaten` (agents, meals), as
-            `World.agents` and `World.deaths` give them.
+        world: World of the agents.
+        lives: A value per agent by name, (agents,), with `genome` (agents, genes) and `eaten` (agents, meals), as from
+            `World.agents` and `World.deaths`.
     """
     columns = world.columns
     end = np.where(lives["death_step"] < 0, world.step, lives["death_step"])
@@ -47,7 +47,7 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
 
 
 def _gene_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
-    """The genes of agents by the names of their columns; NaN where a species lacks a gene."""
+    """Genes of agents by column; NaN if a species lacks a gene."""
     rows: Rows = {}
     for name in world.columns.gene_names:
         values = np.full(len(lives["species"]), np.nan, np.float32)
@@ -60,7 +60,7 @@ def _gene_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
 
 
 def _held_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
-    """What agents hold of the stores beside energy, by the names of the columns; NaN where a species lacks one."""
+    """Levels of agents' stores other than energy, by column; NaN if a species lacks one."""
     rows: Rows = {}
     for name in world.columns.held_names:
         has = np.array([name in species.store for species in world.config.species.values()])
@@ -72,9 +72,9 @@ class PopulationSampler:
     """Makes rows of the table `population` of one species of a world: its state now, and counts since the last row.
 
     Args:
-        world: The world.
-        species: Index of the species in the config's order.
-        since: What the next row counts from; None for the world's present state.
+        world: The world to sample.
+        species: Index of the species in the config.
+        since: Counts from which the next row starts; None for the world's present state.
     """
 
     def __init__(self, world: World, species: int = 0, since: Sampled | None = None) -> None:
@@ -88,7 +88,7 @@ class PopulationSampler:
         self.since = self._now()
 
     def row(self) -> Rows:
-        """The row of the interval that ends now."""
+        """Row of the interval that ends now."""
         world, since = self.world, self.since
         lives = world.agents()
         lives = {name: values[lives["species"] == self.species] for name, values in lives.items()}
@@ -137,7 +137,7 @@ class PopulationSampler:
 
 
 def frame_rows(world: World) -> list[Rows]:
-    """Rows of the table `frames`: every agent and every food of a world as it is now."""
+    """Rows of the table `frames`: the current state of every agent and food of a world."""
     lives, foods = world.agents(), world.foods()
     here = {"world": world.row, "step": world.step}
     placed = {column: lives[column] for column in ("x", "y", "angle", "energy")}
@@ -181,7 +181,7 @@ def snapshot(world: World) -> Snapshot:
 
 
 def _rays(world: World, species: NDArray[np.int32]) -> NDArray[np.float32]:
-    """The rays of all agents, by the types of the world."""
+    """Rays of all agents, by the types of the world."""
     every = types(world.config)
     most = max(kind.sensor.ray_count for kind in world.config.species.values())
     rays = np.full((len(species), most, len(every)), -1.0, np.float32)

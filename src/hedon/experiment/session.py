@@ -1,4 +1,4 @@
-"""The manifest that a session of a run writes at its beginning and at its end."""
+"""The manifest that a session of a run writes at its start and at its end."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -20,16 +20,16 @@ from hedon.record.writer import Writer
 
 
 class Planned(Protocol):
-    """What a manifest says of a plan: a `RunPlan`, or what another program drives."""
+    """What a manifest needs from a plan: a `RunPlan`, or worlds that another program drives."""
 
     @property
     def config(self) -> Config:
-        """Of the worlds."""
+        """Settings of the worlds."""
         ...
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """One per world."""
+        """One seed per world."""
         ...
 
     @property
@@ -44,13 +44,13 @@ class Planned(Protocol):
 
 
 def first_manifest(plan: Planned, simulation: Simulation, from_step: int = 0, worlds: Sequence[World] = ()) -> Manifest:
-    """The manifest of a run that begins now, at step 0 or, for a branch, at a later one.
+    """Manifest of a run that starts now, at step 0 or, for a branch, at a later one.
 
     Args:
-        plan: What is run.
-        simulation: Made from the plan.
-        from_step: Where it begins [step].
-        worlds: That are recorded; all if none is given.
+        plan: Plan of the run.
+        simulation: Simulation made from the plan.
+        from_step: Step at which it starts [step].
+        worlds: Worlds to record; all if empty.
     """
     config, worlds = plan.config, worlds or simulation.worlds
     manifest = Manifest(
@@ -78,7 +78,7 @@ def first_manifest(plan: Planned, simulation: Simulation, from_step: int = 0, wo
 
 
 def channel_notes(config: Config) -> Iterator[ChannelNote]:
-    """What agents of each species observe beside rays and touch, are paid for, and have a gate by."""
+    """Channels of each species: those observed besides rays and touch, those of the reward, and the gate."""
     for species, layout in layouts(config).items():
         for each in layout.observed:
             yield ChannelNote(species, "observed", each.name, "", each.scale, each.unit, each.meaning)
@@ -91,7 +91,7 @@ def channel_notes(config: Config) -> Iterator[ChannelNote]:
 
 
 def _places(worlds: Sequence[World]) -> tuple[tuple[tuple[tuple[float, float], ...], ...], ...]:
-    """The corners of the obstacles of each world, to the thousandth of a unit: for pictures."""
+    """Corners of the obstacles of each world, rounded to a thousandth of a unit, for pictures."""
     return tuple(
         tuple(tuple((round(x, 3), round(y, 3)) for x, y in corners) for corners in world.obstacles.tolist())
         for world in worlds
@@ -99,13 +99,13 @@ def _places(worlds: Sequence[World]) -> tuple[tuple[tuple[tuple[float, float], .
 
 
 def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, from_step: int) -> Manifest:
-    """The manifest of a run that continues now: as before, with a new session at the end of the list.
+    """Manifest of a run that continues now: as before, with a new session at the end of the list.
 
     Args:
-        manifest: As the session before left it.
-        plan: With the total number of steps from now on.
-        simulation: Made from the plan, at `from_step`.
-        from_step: Where it continues [step].
+        manifest: Manifest at the end of the session before.
+        plan: Plan with the total number of steps from now on.
+        simulation: Simulation made from the plan, at `from_step`.
+        from_step: Step at which it continues [step].
     """
     here = replace(
         manifest,
@@ -131,8 +131,8 @@ class WorldEnd:
 
     Attributes:
         step: Steps completed [step].
-        extinct_step: At which nobody was left; None if somebody lives [step].
-        digest: Of its state; empty after a fault.
+        extinct_step: Step of its extinction; None if any agent is alive [step].
+        digest: Digest of its state; empty after a fault.
     """
 
     step: int
@@ -141,21 +141,22 @@ class WorldEnd:
 
 
 def end_of(world: World, *, failed: bool = False) -> WorldEnd:
-    """How a world is now."""
+    """Current end of a world."""
     return WorldEnd(world.step, world.extinct_step, "" if failed else world.digest())
 
 
 def last_manifest(
     manifest: Manifest, ends: Sequence[WorldEnd], status: str, seconds: float, writer: Writer
 ) -> Manifest:
-    """Saves and returns the manifest of a session that ends now. Unless it failed, first writes all rows to disk.
+    """Saves and returns the manifest of a session that ends now. Unless the session failed, first writes all rows to
+    disk.
 
     Args:
-        manifest: As the session has it.
-        ends: Of its worlds.
+        manifest: Manifest of the session so far.
+        ends: Ends of its worlds.
         status: "finished", "interrupted" or "failed".
-        seconds: Spent on steps, over all sessions [s].
-        writer: Open on the run's folder.
+        seconds: Time spent on steps, over all sessions [s].
+        writer: Writer that is open on the run's folder.
 
     Raises:
         RecordError: The rows or the manifest cannot be written.

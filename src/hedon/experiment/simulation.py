@@ -1,4 +1,4 @@
-"""The engine's worlds as Python objects: make them from a config, run them, keep them, go on with them."""
+"""The engine's worlds as Python objects: create them from a config, run, save and continue them."""
 
 import copy
 import json
@@ -32,13 +32,13 @@ from hedon.text import brief, count
 BACKEND_VARIABLE = "HEDON_BACKEND"
 """Environment variable that forces an instruction set; see `hedon run --help`."""
 SCRATCH_VARIABLE = "HEDON_SCRATCH"
-"""Environment variable that names a folder for the moments of learners and their observations, which then need no
-memory; see the guide on large worlds. It changes no result."""
+"""Environment variable that names a folder for the learners' moments and observations, which then use no memory; see
+the guide on large worlds. It changes no result."""
 MAX_WORLD_SEED = 2**64 - 1
 """Largest seed of a world; records of a run hold only the lower half of these."""
 MAX_RUN_STEPS = 2**62
 MARKS = {"hedon": "by another version of hedon", "config": "with another config", "rules": "with other rules"}
-"""What saved worlds share with those that go on from them, and how it is said where they do not."""
+"""What saved worlds and their continuations must share, with the message if they differ."""
 
 
 class Simulation(Cloned):
@@ -53,22 +53,22 @@ class Simulation(Cloned):
 
     Args:
         config: Settings of the worlds.
-        seeds: One world per seed, each in [0, 2^64).
-        threads: Threads to use; 0 for all processors that this process may use. Changes no result.
-        backend: What computes: an instruction set, one of `hedon._engine.kernel.kernel_names`, or a device, "cuda";
-            empty for what the environment variable HEDON_BACKEND names, otherwise the best instruction set.
+        seeds: One seed per world, each in [0, 2^64).
+        threads: Number of threads; 0 for all processors that this process may use. Changes no result.
+        backend: Backend: an instruction set, one of `hedon._engine.kernel.kernel_names`, or a device, "cuda"; empty for
+            the value of the environment variable HEDON_BACKEND, or else the best instruction set.
         rules: Texts of the rules that the config is pinned to, such as `RunPlan.rules`; all others are read from their
             files.
 
     Raises:
         ConfigError: A setting is wrong.
         ArgumentError: Another argument is wrong.
-        RuleError: A rule of the config is not there, has changed, or cannot be compiled.
+        RuleError: A rule of the config is missing, has changed, or cannot be compiled.
         EngineError: The backend is unknown or not for this processor, there is too little memory, or there is no room
             for the initial agents or foods.
 
-    Every method, and every method of its worlds, raises EngineError while the simulation runs in another thread, and
-    in a process that was forked from the one that made it: the simulation's threads do not exist there.
+    Every method, and every method of its worlds, raises EngineError while the simulation runs in another thread, and in
+    a process forked from the one that created it, since the simulation's threads do not exist there.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class Simulation(Cloned):
     ) -> None:
         self.config = given.config
         self._given, self._backend = given, backend
-        self._driven = False  # by an environment
+        self._driven = False  # whether an environment drives the worlds
         self._threads = integer("threads", threads, 0, MAX_THREADS)
         if not isinstance(backend, str):
             raise ArgumentError(f"backend: must be the name of an instruction set, not {backend!r}")
@@ -117,7 +117,7 @@ class Simulation(Cloned):
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """The seed of each world."""
+        """Seed of each world."""
         return tuple(world.seed for world in self.worlds)
 
     def __repr__(self) -> str:
@@ -125,7 +125,7 @@ class Simulation(Cloned):
         return f"<Simulation {self._line()}, {alive:,} alive>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: a row for each world."""
+        """Shown in notebooks: a row for each world."""
         rows = [[world.seed, f"{world.step:,}", f"{world.alive:,}"] for world in self.worlds]
         return table_html(self._line(), ("seed", "step", "alive"), rows)
 
@@ -134,7 +134,7 @@ class Simulation(Cloned):
         return f"{self.config.name} ({self.config.fidelity}): {count(len(self.worlds), 'world')} at step {step:,}"
 
     def _require_free(self, call: str) -> None:
-        """ArgumentError: an environment drives these worlds, and would not know of this call."""
+        """Raises ArgumentError if an environment drives these worlds, since it would not know of this call."""
         if self._driven:
             raise ArgumentError(
                 f"{call}: an environment drives these worlds, and nobody else may change them: call its step, reset or "
@@ -149,18 +149,18 @@ class Simulation(Cloned):
         continue.
 
         Args:
-            steps: How many steps; any number, not only whole windows.
+            steps: Number of steps, not necessarily whole windows.
 
         Raises:
-            ArgumentError: `steps` is negative or not a whole number, or an environment advances the worlds.
-            EngineError: A world reports an error; it names the world, the step and the agent.
+            ArgumentError: `steps` is negative or not an integer, or an environment advances the worlds.
+            EngineError: A world reports an error; the message gives the world, the step and the agent.
             KeyboardInterrupt: Ctrl-C was pressed; the worlds have done fewer steps than `steps`.
         """
         self._require_free("run")
         self.engine.run(integer("steps", steps, 0, MAX_RUN_STEPS))
 
     def set_founders(self, founders: Founders) -> None:
-        """Gives the founders of every world the genes of a table; call it before the first step.
+        """Gives the founders of every world the genes from a table; call it before the first step.
 
         Raises:
             FounderError: The table does not fit the config.
@@ -178,7 +178,7 @@ class Simulation(Cloned):
             self.engine.set_genomes(world.index, genomes.astype(np.float32))
 
     def set_networks(self, networks: Networks) -> None:
-        """Gives the founders of the species that never learn the networks of a file; call it before the first step.
+        """Gives the founders of species that never learn the networks from a file; call it before the first step.
 
         Raises:
             NetworkError: The networks do not fit the config.
@@ -202,37 +202,37 @@ class Simulation(Cloned):
         return all(world.extinct for world in self.worlds)
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Begins all worlds again.
+        """Restarts all worlds.
 
         Args:
-            seeds: One per world, each in [0, 2^64).
+            seeds: One seed per world, each in [0, 2^64).
 
         Raises:
-            ArgumentError: It is no list of seeds, or there are more or fewer than worlds.
-            EngineError: There is no room for the initial agents or foods of a world.
+            ArgumentError: The seeds are not a list, or their number differs from that of the worlds.
+            EngineError: A world has no room for its initial agents or foods.
         """
         self._require_free("reset")
         for world, seed in zip(self.worlds, self._seeds_of(seeds), strict=True):
             self.engine.reset(world.index, seed)
 
     def _seeds_of(self, seeds: Any) -> tuple[int, ...]:
-        """One seed per world. ArgumentError: they are not."""
+        """Returns one seed per world. Raises ArgumentError for anything else."""
         wanted = seed_list(seeds, MAX_WORLD_SEED)
         if len(wanted) != len(self.worlds):
             raise ArgumentError(f"seeds: there must be {len(self.worlds)}, one per world, not {len(wanted)}")
         return wanted
 
     def reseed(self, seeds: Sequence[int]) -> None:
-        """Gives all worlds other chances from now on: the same agents, genes, networks and food, another future.
+        """Gives all worlds other random numbers from now on: the same agents, genes, networks and food, another future.
 
-        Deaths that nobody has read yet (`World.deaths`) are forgotten.
+        Unread deaths (`World.deaths`) are discarded.
 
         Args:
-            seeds: One per world, each in [0, 2^64).
+            seeds: One seed per world, each in [0, 2^64).
 
         Raises:
-            ArgumentError: It is no list of seeds, there are more or fewer than worlds, or worlds have obstacles, whose
-                places follow from the seed.
+            ArgumentError: The seeds are not a list, their number differs from that of the worlds, or worlds have
+                obstacles, whose places depend on the seed.
             EngineError: A world has stopped at a fault.
         """
         self._require_free("reseed")
@@ -245,9 +245,9 @@ class Simulation(Cloned):
             self.engine.restore(world.index, kept)
 
     def save(self) -> bytes:
-        """All worlds as they are now, with their seeds: what `restore` goes on from with the same bits.
+        """Saves the current state of all worlds, with their seeds; `restore` continues from it with the same bits.
 
-        Deaths that nobody has read yet (`World.deaths`) are not in it.
+        Unread deaths (`World.deaths`) are not included.
 
         Raises:
             EngineError: A world has stopped at a fault.
@@ -255,20 +255,20 @@ class Simulation(Cloned):
         return self._pack(b"")
 
     def restore(self, saved: bytes) -> None:
-        """Puts saved worlds and their seeds in place of these; threads and backend may be other ones.
+        """Replaces these worlds and their seeds with saved ones; threads and backend may differ.
 
         Args:
-            saved: What `save` gave, of as many worlds with the same config, rules and version of hedon.
+            saved: Bytes from `save`, of as many worlds with the same config, rules and version of hedon.
 
         Raises:
-            ArgumentError: It is something else, or is damaged. The worlds then stay as they are.
+            ArgumentError: The bytes are of something else or damaged. The worlds then stay as they are.
         """
         self._require_free("restore")
         self._unpack(saved)
         self._restore(saved)
 
     def clone(self) -> Self:
-        """A copy with worlds of its own, which goes on as this one does; so do `copy.copy` and `deepcopy`."""
+        """Returns a copy with its own worlds, which continues as this one would, like `copy.copy` and `deepcopy`."""
         made = self._fresh_one()
         made._restore(self.save())
         vars(made).update(copy.deepcopy(self._added()))
@@ -287,20 +287,20 @@ class Simulation(Cloned):
         vars(self).update(added)
 
     def _arguments(self) -> dict[str, Any]:
-        """What it was made with; the rules without what is compiled for this process."""
+        """Arguments that created it; rules are without what is compiled for this process."""
         rules = tuple(replace(rule) for rule in self.rules)
         given = {"config": self.config, "seeds": self.seeds, "threads": self._threads, "backend": self._backend}
         return {**given, "rules": rules}
 
     def _fresh_one(self) -> Self:
-        """Another one with the same arguments, at its beginning."""
+        """A new simulation with the same arguments, at its start."""
         made = type(self).__new__(type(self))
         made._begin(self._given, self.seeds, self._threads, self._backend, self.rules)
         return made
 
     @cached_property
     def _mark(self) -> dict[str, Any]:
-        """What worlds must share to go on from one another's states."""
+        """What worlds must share to continue from one another's states."""
         rules = [[rule.species, rule.use, rule.source.name, rule.source.digest] for rule in self.rules]
         return {"hedon": version("hedon"), "config": digest(self.config), "rules": rules}
 
@@ -308,7 +308,7 @@ class Simulation(Cloned):
         return self.engine.pack(json.dumps(self._mark).encode() + b"\n" + more)
 
     def _unpack(self, saved: Any) -> bytes:
-        """What `_pack` was given. ArgumentError: these are no worlds that this simulation can go on from."""
+        """The bytes given to `_pack`. Raises ArgumentError if this simulation cannot continue from these worlds."""
         if not isinstance(saved, bytes):
             raise ArgumentError(f"saved = {brief(repr(saved))}: must be bytes, as `save` gives them")
         try:
@@ -324,13 +324,13 @@ class Simulation(Cloned):
         return more
 
     def _become(self, saved: Any) -> dict[str, Any]:
-        """Makes all worlds the only saved one, each with its own seed.
+        """Turns all worlds into the only saved one, each with its own seed.
 
         Returns:
             The arrays of that world, for `_engine.Simulation.restore`.
 
         Raises:
-            ArgumentError: It is something else, or these worlds have obstacles.
+            ArgumentError: The bytes are of something else, or these worlds have obstacles.
         """
         if self.config.obstacle.count:
             raise ArgumentError("world: the places of obstacles follow from a world's seed: these worlds have some")

@@ -19,12 +19,12 @@ class World:
     """One world of a simulation, read between runs."""
 
     def __init__(self, engine: Any, index: int, config: Config) -> None:
-        """A simulation makes its worlds.
+        """Called by a simulation for each of its worlds.
 
         Args:
             engine: The compiled simulation, with all worlds.
-            index: Of the world in it.
-            config: Of the world.
+            index: Index of the world in it.
+            config: Settings of the world.
         """
         self._engine = engine
         self.index = index
@@ -39,12 +39,12 @@ class World:
 
     @cached_property
     def layouts(self) -> tuple[SpeciesLayout, ...]:
-        """What the numbers of the agents of each species mean, in the order of the config."""
+        """Layouts of the agents' numbers of each species, in the order of the config."""
         return tuple(layouts(self.config).values())
 
     @cached_property
     def columns(self) -> Columns:
-        """What the columns of its records follow from."""
+        """Description of the columns of its records."""
         return columns_of(self.config)
 
     @property
@@ -64,7 +64,7 @@ class World:
 
     @property
     def alive(self) -> int:
-        """Agents alive."""
+        """Number of agents alive."""
         return self._engine.head(self.index)["living_count"]
 
     @property
@@ -80,26 +80,26 @@ class World:
 
     @property
     def waiting_deaths(self) -> float:
-        """Deaths that have not been read, as a share of the engine's room for them; above 1 where some were lost."""
+        """Unread deaths as a share of the engine's space for them; above 1 if some were lost."""
         head = self._engine.head(self.index)
         return (head["death_log_count"] + head["death_log_lost"]) / len(self.view("death_log.birth_step"))
 
     @property
     def lost_deaths(self) -> int:
-        """Deaths since the last call of `deaths` that can no longer be read: newer ones took their room."""
+        """Deaths since the last call of `deaths` that can no longer be read, as newer ones have overwritten them."""
         return self._engine.head(self.index)["death_log_lost"]
 
     @property
     def counters(self) -> dict[str, Any]:
-        """Births, deaths, failures and the energy ledger since the world began, over all species."""
+        """Births, deaths, failures and the energy ledger since the start of the world, over all species."""
         each = [self.counters_of(species) for species in range(len(self.config.species))]
         return {name: sum(counters[name] for counters in each) for name in each[0]}
 
     def counters_of(self, species: int | str) -> dict[str, Any]:
-        """The same of one species.
+        """The same counters for one species.
 
         Args:
-            species: Its name, or its index in the config's order; so everywhere.
+            species: Name of the species, or its index in the config; this holds for all methods.
 
         Raises:
             ArgumentError: There is no species of this name.
@@ -113,7 +113,7 @@ class World:
 
     @property
     def living(self) -> NDArray[np.int32]:
-        """Slots of the living in the order of their ids, (alive,): their rows in the views."""
+        """Slots of living agents in the order of their ids, (alive,): their rows in the views."""
         return self.view("living")[: self.alive]
 
     @cached_property
@@ -125,8 +125,8 @@ class World:
         """A read-only view of one array of the state, of any shape, mostly by slot; valid until the next `run`.
 
         Args:
-            path: For example `genome` (slots, genes), `physics.bodies.x` (slots), `life.energy` (slots), `params`
-                (slots, parameters of a network). `hedon._engine.Simulation.view_names` lists them all.
+            path: Path of the array, such as `genome` (slots, genes), `physics.bodies.x` (slots), `life.energy` (slots),
+                `params` (slots, parameters of a network). `hedon._engine.Simulation.view_names` lists all paths.
 
         Raises:
             ArgumentError: There is no such array.
@@ -141,7 +141,7 @@ class World:
     def agents(self) -> dict[str, NDArray[Any]]:
         """Copies of the data of each living agent, (alive,) each, with `genome` (alive, genes).
 
-        Each store beside energy is there by its name, with 0 for agents of species that do not have it.
+        Each store besides energy appears under its name, with 0 for agents of species that do not have it.
         """
         rows = self._engine.living_rows(self.index)
         living = self.living
@@ -151,7 +151,7 @@ class World:
         return rows | self._held(rows.pop("store"), rows["species"])
 
     def _held(self, held: NDArray[np.float64], species: NDArray[np.int32]) -> dict[str, NDArray[np.float64]]:
-        """What agents of these species hold of each store beside energy, by its name; 0 of those that they lack."""
+        """Levels of agents' stores besides energy, by name; 0 if a species lacks the store."""
         found = {name: np.zeros(len(species)) for name in store_columns(self.config)}
         for i, each in enumerate(self.config.species.values()):
             mine = species == i
@@ -160,17 +160,17 @@ class World:
         return found
 
     def deaths(self, *, partial: bool = False) -> dict[str, NDArray[Any]]:
-        """Takes the data of each agent that died since the last call, (deaths,) each, with `genome`, and its stores.
+        """Takes the data of each agent that died since the last call, (deaths,) each, with `genome` and stores.
 
-        The engine has room for the newest 16 deaths per slot: to have all of a long simulation, call this between
-        runs. Without a use for them you need not call it.
+        The engine stores the newest 16 deaths per slot. To get all deaths of a long simulation, call this between runs;
+        if you do not need them, there is no need to call it.
 
         Args:
-            partial: Take those that are left, where older ones are lost; `lost_deaths` is the number of the others.
+            partial: Take the remaining deaths even if older ones are lost; `lost_deaths` is the number of lost ones.
 
         Raises:
-            EngineError: Some are lost, and `partial` is false. Nothing is taken then.
-            ArgumentError: The world is recorded (`hedon.make(record=…)`): its records take them.
+            EngineError: Some deaths are lost, and `partial` is false. Nothing is taken then.
+            ArgumentError: The world is recorded (`hedon.make(record=…)`), and its records take the deaths.
         """
         if self._row is not None:
             raise ArgumentError("deaths: the world is recorded, and its records take them: read them there, at the end")
@@ -197,15 +197,15 @@ class World:
 
     @property
     def obstacles(self) -> NDArray[np.float32]:
-        """Places of the corners of each obstacle [u], (obstacles, corners, 2)."""
+        """Corners of each obstacle [u], (obstacles, corners, 2)."""
         count, corners = self.config.obstacle.count, self.config.obstacle.corners
         return self.view("obstacle").reshape(count, corners, 2).copy()
 
     def observations(self, species: int | str = 0) -> NDArray[np.float32]:
-        """What each living agent of a species observes now, (alive, observation size).
+        """Current observation of each living agent of a species, (alive, observation size).
 
         Args:
-            species: Its name or index.
+            species: Name or index of the species.
 
         Raises:
             ArgumentError: There is no species of this name.
@@ -213,10 +213,10 @@ class World:
         return self._engine.observations(self.index, self._species(species))
 
     def rays(self, species: int | str = 0) -> NDArray[np.float32]:
-        """The rays of the observations of a species: (alive, rays, types that it sees).
+        """Rays in the observations of a species: (alive, rays, types that it sees).
 
         Args:
-            species: Its name or index.
+            species: Name or index of the species.
 
         Raises:
             ArgumentError: There is no species of this name.
@@ -226,7 +226,7 @@ class World:
         return self.observations(species)[:, : seen * rays].reshape(-1, seen, rays).swapaxes(1, 2)
 
     def digest(self) -> str:
-        """A hash of the world's whole state: equal for equal bits."""
+        """Hash of the world's whole state, equal for equal bits."""
         return f"{self._engine.digest(self.index):016x}"
 
     def _species(self, species: int | str) -> int:

@@ -8,27 +8,27 @@ from numpy.typing import NDArray
 from hedon.config.problem import nearest
 
 PARTS = ("", "life.", "physics.bodies.")
-"""Where an attribute is looked for, in this order."""
+"""Prefixes with which an attribute is looked up, in this order."""
 
 
 class WorldArrays:
     """The arrays of a world's state, each read-only, with a row per slot, valid until the next `run`.
 
     `state.energy` is `view("life.energy")`, `state.x` is `view("physics.bodies.x")`, `state.genome` is
-    `view("genome")`. The rows of the living are `state.energy[world.living]`. `dir(state)` lists all names; what has
-    none, such as `food_stock.eaten`, `World.view` gives.
+    `view("genome")`. The rows of living agents are `state.energy[world.living]`. `dir(state)` lists all names; for
+    arrays without one, such as `food_stock.eaten`, use `World.view`.
 
     Args:
-        view: Gives an array by its path, of any shape.
-        paths: Of all arrays.
+        view: Function from an array's path to the array, of any shape.
+        paths: Paths of all arrays.
     """
 
     def __init__(self, view: Callable[[str], NDArray[Any]], paths: Sequence[str]) -> None:
-        """A world makes its own.
+        """Called by a world for its own state.
 
         Args:
-            view: gives the array of a path, of any shape.
-            paths: of all arrays.
+            view: Function from an array's path to the array, of any shape.
+            paths: Paths of all arrays.
         """
         self._view = view
         self._paths = {
@@ -42,7 +42,7 @@ class WorldArrays:
         """The array of this name, of any shape.
 
         Raises:
-            AttributeError: There is none.
+            AttributeError: There is no such array.
         """
         if name.startswith("_"):
             raise AttributeError(name)
