@@ -1,1 +1,1 @@
-"""The command line: each command parses, calls and prints. Large libraries are imported inside the commands."""
+"""The command line: each command parses, calls and prints. Commands import large libraries when they run."""

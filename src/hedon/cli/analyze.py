@@ -20,7 +20,7 @@ def analyze(
 ) -> None:
     """Answer statistical questions about runs, and write every number.
 
-    Runs of equal configs count as repetitions of one condition, with their worlds as the units. Prints short
+    Runs of equal configs are replicates of one condition, and worlds are the units of analysis. Prints short
     tables and writes analysis.json and one CSV file per table. docs/guide/analysis.md explains them.
 
     \b
@@ -42,7 +42,7 @@ def analyze(
       hedon analyze runs/baseline
       hedon analyze runs/a runs/b --only lifetime,selection --out answers
     """
-    # Imported here because this takes seconds: other commands must not wait for it.
+    # Imported here because this takes seconds, and other commands must not wait for it.
     from hedon.cli.display.analysis import analysis_group
     from hedon.cli.display.step import StepDisplay
     from hedon.record.reader import open_run

@@ -1,4 +1,4 @@
-"""`hedon assay`: measure fitness directly, with founders of chosen genes."""
+"""`hedon assay`: measures fitness directly, with founders that have chosen genes."""
 
 from functools import partial
 from pathlib import Path
@@ -53,8 +53,8 @@ def landscape(
 ) -> None:
     """Fitness as a surface over two genes.
 
-    Founders are spread over all genes, and there is no mutation: descendants have the genes of their founder, with
-    two parents half of them. Their numbers, children, food and lifespans, relative to the mean of their world, give a
+    Founders are spread over all genes, and there is no mutation: descendants have the genes of their founder, or
+    half of them with two parents. Their numbers, children, food and lifespans, relative to their world's mean, give a
     surface over two genes, with its optimum, its slope at 0 and its curvature. Sixteen neutral genes show what chance
     alone gives.
 
@@ -115,7 +115,7 @@ def invade(
 ) -> None:
     """A few mutants among many residents: do they spread?
 
-    As compete, but the mutant begins with a small share. Numbers are those of the mutant against the resident.
+    Like compete, but the mutant starts with a small share. Numbers compare the mutant with the resident.
 
     \b
     Example:
@@ -135,9 +135,9 @@ def knockout(
     *,
     options: ContestOptions,
 ) -> None:
-    """The living of a run against themselves with one gene at 0: what is the gene worth?
+    """Living agents of a run against copies with one gene at 0: what is the gene worth?
 
-    As compete. Below 0, the gene is worth having.
+    Like compete. A selection coefficient below 0 means that the gene is worth having.
 
     \b
     Example:
@@ -170,7 +170,7 @@ def frequency(
 ) -> None:
     """Fitness against frequency: is the rarer of two groups the fitter one?
 
-    As compete, from several shares of A. Prints the selection coefficient of A per generation at each share, its slope
+    Like compete, but from several shares of A. Prints A's selection coefficient per generation at each share, its slope
     over the share, and the share at which neither grows, all with intervals over seeds. If each group grows where it is
     rare, the two can live together. After Ctrl-C, the same command continues; further shares are added to the existing
     ones if the first is the same or --out is given.
@@ -203,7 +203,7 @@ def stability(
     *,
     options: StabilityOptions,
 ) -> None:
-    """Begin evolution at a claimed end point, and see whether it stays.
+    """Start evolution at a claimed end point, and see whether it stays.
 
     Founders have the condition's own spread around the point, and mutation is on. Prints where each weight went,
     compared with neutral genes that start alike and mutate along the same pedigrees. After Ctrl-C, the same command

@@ -1,4 +1,4 @@
-"""What the commands of `hedon assay` share: their options, and how runs are made and answers shown."""
+"""Common parts of the commands of `hedon assay`: options, runs, and output of the answers."""
 
 import shlex
 from collections.abc import Callable, Sequence
@@ -43,10 +43,10 @@ class _Worlds:
 
 @dataclass(frozen=True)
 class WorldOptions(ClusterOptions, _Worlds):
-    """The options of every assay: its worlds, and how they are run."""
+    """Options of every assay: its worlds, and how to run them."""
 
     def answer(self, kind: str, demands: "Sequence[Demand]", ask: "Callable[[Sequence[Sample]], Answer]") -> None:
-        """Makes the worlds of an assay, or reads them, and prints and writes what they tell.
+        """Makes or reads the worlds of an assay, and prints and writes the answer.
 
         Raises:
             RecordError: A folder holds a run with other settings or founders.
@@ -89,10 +89,10 @@ class _Setting:
 
 @dataclass(frozen=True)
 class AssayOptions(WorldOptions, _Setting):
-    """The options of an assay whose worlds begin in a condition: which changes it has, then those of every assay."""
+    """Options of an assay that starts from a condition: changes of its settings, then the options of every assay."""
 
     def config(self, source: str) -> "Config":
-        """The condition with its changes. ConfigError: it cannot be used."""
+        """The condition with its changes. Raises ConfigError if it is invalid."""
         from hedon.config.load import load_config
 
         return load_config(source, self.fidelity, self.overrides or ())
@@ -106,14 +106,14 @@ class AssayOptions(WorldOptions, _Setting):
 
 @dataclass(frozen=True)
 class ContingencyOptions(WorldOptions):
-    """The same with seeds that are none of a first run's."""
+    """The same, with default seeds that a first run would not use."""
 
     seeds: Seeds = "101-110"
 
 
 @dataclass(frozen=True)
 class StabilityOptions(AssayOptions):
-    """The same with fewer worlds: each must evolve."""
+    """The same with fewer worlds, as each must evolve."""
 
     seeds: Seeds = "1-5"
 
@@ -131,13 +131,13 @@ class _Place:
 
 @dataclass(frozen=True)
 class ContestOptions(AssayOptions, _Place):
-    """The options of assays in which groups compete: where, then those of every assay."""
+    """Options of assays in which groups compete: the condition, then the options of every assay."""
 
     def setting(self, *sources: str) -> "tuple[Config, str]":
-        """The condition without mutation, and the species that competes with itself.
+        """The condition without mutation, and the species whose groups compete.
 
         Raises:
-            ConfigError: The condition cannot be used.
+            ConfigError: The condition is invalid.
             ArgumentError: There is no such species.
         """
         from hedon.assay.landscape import without_mutation

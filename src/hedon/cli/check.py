@@ -1,4 +1,4 @@
-"""`hedon check`: are the files of runs whole, does a run come out again, and why do two runs differ?"""
+"""`hedon check`: checks a run's files, repeats the run, or explains why two runs differ."""
 
 from pathlib import Path
 from typing import Annotated
@@ -62,7 +62,9 @@ def _compare(run: Path, other: Path) -> bool:
 
 
 def _replay_fault(run: Path, threads: int) -> bool:
-    """Computes a fault again. Returns whether it happens again: else the machine or a changed source is the cause."""
+    """Repeats the steps before a fault. Returns whether it recurs; if not, the machine or a source change is the
+    cause.
+    """
     from hedon.experiment.fault import replay_fault
 
     found = replay_fault(run, threads)

@@ -1,4 +1,4 @@
-"""Options of commands that can spread their work over several machines."""
+"""Options of commands that can distribute their work over several machines."""
 
 import sys
 from collections.abc import Sequence
@@ -17,12 +17,12 @@ Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th p
 
 
 class ClusterError(HedonError):
-    """Work that cannot be spread in this way."""
+    """Work that cannot be distributed in this way."""
 
 
 @dataclass(frozen=True)
 class ClusterOptions:
-    """Where the work is done: here, on a Ray cluster, in parts by several machines, or by a job array of Slurm."""
+    """Where the work is done: here, on a Ray cluster, in parts on several machines, or by a Slurm job array."""
 
     ray: Ray = None
     part: Part = None
@@ -33,7 +33,7 @@ class ClusterOptions:
     hours: Annotated[int, typer.Option(help="With --slurm: hours that a task may take.", min=1, max=10_000)] = 24
 
     def write_script(self, path: Path, name: str, words: Sequence[str], most: int, processors: int) -> Path:
-        """Writes the job array.
+        """Writes the script of the job array.
 
         Raises:
             ClusterError: There is nothing to run, or --ray or --part is given too.
@@ -52,7 +52,7 @@ class ClusterOptions:
 
 
 def own_words(*without: str) -> list[str]:
-    """The words of this command line, without some options that have a value and without --slurm."""
+    """Words of this command line, without --slurm and without some options and their values."""
     kept: list[str] = []
     words = iter(sys.argv[1:])
     for word in words:

@@ -1,4 +1,4 @@
-"""`hedon compare`: do two conditions differ?"""
+"""`hedon compare`: compares two conditions."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -56,18 +56,18 @@ def compare(
 
 
 def read_sources(source: str, other: str | None) -> "WorldTable":
-    """The worlds of one source, or of two with the factor "source"."""
+    """Worlds of one source, or of two with the factor "source"."""
     from hedon.compare.source import read_both, read_table
 
     return read_table(source) if other is None else read_both((source, other))
 
 
 def columns(text: str | None) -> list[str]:
-    """Names from a text with commas between them; none for None."""
+    """Splits a text at its commas; empty for None."""
     return [name.strip() for name in text.split(",")] if text else []
 
 
 def _folder(source: str, other: str | None) -> Path:
-    """Beside the worlds of a single source; in the current folder for two, for a file, and for a URL."""
+    """Default output folder: next to the worlds of a single source; the current folder for two, a file or a URL."""
     folder = Path(source)
     return folder / "compare" if other is None and "://" not in source and folder.is_dir() else Path("compare")

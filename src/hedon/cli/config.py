@@ -1,4 +1,4 @@
-"""Commands about configs: list the presets, show a config, compare two, check one."""
+"""Commands on configs: list the presets, show a config, compare two, check one."""
 
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -106,7 +106,7 @@ def diff(
 def check(source: Source, fidelity: Fidelity = None, overrides: Overrides = None) -> None:
     """Check a config: print its digest, or everything that is wrong.
 
-    Files of rules are run, as they are in a run, and their text counts in the digest.
+    Rule files are executed, as in a run, and their text enters the digest.
 
     \b
     Example:
@@ -118,7 +118,7 @@ def check(source: Source, fidelity: Fidelity = None, overrides: Overrides = None
     config = load_config(source, fidelity, overrides or ())
     found = rules(config, rules_beside(source))
     for rule in found:
-        _ = rule.compiled  # whatever is wrong with its file is said here
+        _ = rule.compiled  # reports any problem with the rule's file
     typer.echo(f"{source}: valid (preset {config.preset}, fidelity {config.fidelity})")
     typer.echo(f"digest {digest(pinned(config, found))}")
 

@@ -1,4 +1,4 @@
-"""The console that all commands print on."""
+"""The console for the output of all commands."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -6,11 +6,11 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 FILE_WIDTH = 110
-"""Columns of text if the output goes to a file, in which tables are as wide as they need be."""
+"""Width of output to a file [characters]; tables may be wider."""
 
 
 def make_console(*, stderr: bool = False) -> "Console":
-    """A console as wide as the terminal; without a terminal, it prints lines that are wider in full."""
+    """A console as wide as the terminal; without a terminal, wider lines are printed in full."""
     from rich.console import Console
 
     class FileConsole(Console):
@@ -19,7 +19,7 @@ def make_console(*, stderr: bool = False) -> "Console":
             super().print(*objects, **options)
 
     def plain(kind: type[Console], width: int | None = None) -> Console:
-        # What users name is printed as it is: brackets and colons in a name are no markup.
+        # Names from users are printed literally: brackets and colons in them are not markup.
         return kind(highlight=False, markup=False, emoji=False, stderr=stderr, width=width)
 
     console = plain(Console)

@@ -1,4 +1,4 @@
-"""`hedon export`: the records of a run as one file for other tools."""
+"""`hedon export`: writes the records of a run as one file for other tools."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -54,7 +54,7 @@ def population(run: Source, file_format: Format = "csv", out: Out = None) -> Non
 
 @app.command()
 def frames(run: Source, file_format: Format = "csv", out: Out = None) -> None:
-    """One row per agent or food and frame: where it was; of a run that was made with --frames.
+    """One row per agent or food in each frame: its position. Needs a run made with --frames.
 
     \b
     Example:
@@ -181,7 +181,7 @@ def video(
 ) -> None:
     """A video of a run.
 
-    Agents are drawn as in the figure of the world: the darker, the more energy. Between two frames they move evenly.
+    Agents are drawn as in the figure of the world: the darker, the more energy. Motion between frames is interpolated.
     Needs ffmpeg, which comes with the optional packages hedon[video].
 
     \b
@@ -232,7 +232,7 @@ def _write_pedigree(
     target: Path,
     write: "Callable[[Run, pl.DataFrame, int, Path], None]",
 ) -> None:
-    """Writes what is derived from a pedigree: `write` gets the run, its agents, the last step and the file."""
+    """Writes data derived from a pedigree: `write` gets the run, its agents, the last step and the file."""
     from hedon.cli.display.step import StepDisplay
     from hedon.export.phylogeny import last_step, pedigree
     from hedon.record.reader import open_run

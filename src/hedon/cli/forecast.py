@@ -25,7 +25,7 @@ def forecast(
 
     Prints the length of life and the number of children at constant energy, the energy that agents need and that
     food supplies, the probability that a newborn finds a free place, how much of each food agents eat before they
-    have learned, the number of generations in a run, and warnings. Computed from the settings alone; takes seconds.
+    have learned, the number of generations in a run, and warnings. Uses only the settings; takes seconds.
 
     \b
     Examples:

@@ -30,9 +30,9 @@ NO_MEMORY = (
     "there is no more memory: lower population.capacity, world.rollout_steps or the number of seeds, "
     "or check the limit `ulimit -v`"
 )
-_CLOSED = 141  # exit code of a command whose output nobody reads to its end, as shells have it: 128 plus SIGPIPE
+_CLOSED = 141  # exit code of a command whose output is no longer read, by the shells' convention: 128 plus SIGPIPE
 ADDRESSES = 2_000_000_000
-"""Most memory that the libraries of a command reserve, before any world [byte]. Some abort if they get none."""
+"""Memory that the libraries of a command reserve at most, before any world [byte]. Some abort if they get none."""
 
 GONE = {
     ("reproduce",): "call `hedon study`: list, plan, run and report, with the same names of items",
@@ -46,9 +46,9 @@ GONE = {
     ("sweep", "script"): "it is `hedon sweep run FILE --slurm` now",
     ("video",): "it is `hedon export video` now",
 }
-"""Commands that there were once, with what replaces them."""
+"""Former commands, with their replacements."""
 GONE_OPTIONS = {("run", "--device"): "--backend", ("power", "--against"): "the second PILOT"}
-"""Options of commands that have another name now."""
+"""New names of options, by command and old name."""
 
 
 GROUPS = {
@@ -77,7 +77,7 @@ GROUPS = {
         "forecast": "Predict from settings whether a world survives.",
     },
 }
-"""The commands as the help lists them."""
+"""Commands in the order of the help."""
 
 
 class Grouped(TyperGroup):
@@ -136,7 +136,7 @@ def main(command: typer.Typer = app) -> None:
     """Runs a command line; a problem that the user can fix ends in one message and exit code 2."""
     sys.stdout, sys.stderr = guard(sys.stdout), guard(sys.stderr)
     _require_addresses()
-    os.environ["MPLBACKEND"] = "agg"  # figures go to files, whatever a user's sessions draw on
+    os.environ["MPLBACKEND"] = "agg"  # figures go to files, whatever backend the user's sessions use
     if command is app:
         _refuse_gone(sys.argv[1:])
         _refuse_empty(sys.argv[1:])
@@ -144,11 +144,11 @@ def main(command: typer.Typer = app) -> None:
         try:
             command()
         finally:
-            sys.stdout.flush()  # here, since at its end Python would print a traceback of its own
+            sys.stdout.flush()  # here, because at exit Python would print its own traceback
     except SystemExit as ending:
         if not pipe_closed() or ending.code not in (None, 0, _CLOSED):
             raise
-        if ending.code == _CLOSED:  # a run has ended early by that
+        if ending.code == _CLOSED:  # the closed pipe has ended a run early
             typer.echo("hedon: interrupted: its output is no longer read", err=True)
         sys.exit(_CLOSED)
     except HedonError as error:
@@ -158,14 +158,14 @@ def main(command: typer.Typer = app) -> None:
             fail(NO_MEMORY)
         if error.filename is None:
             raise
-        # A path that the file system refuses or that cannot be read; any use of a path can raise this.
+        # The file system refuses a path or cannot read it; any use of a path can raise this.
         fail(f"{error.filename}: {error.strerror}")
     except MemoryError:
         fail(NO_MEMORY)
 
 
 def _refuse_gone(words: Sequence[str]) -> None:
-    """Ends a command line with a command or an option of an earlier version, by naming what is there now."""
+    """Ends a command line that uses a command or option of an earlier version, with the replacement."""
     for gone, instead in GONE.items():
         if tuple(words[: len(gone)]) == gone:
             fail(f"there is no command '{' '.join(gone)}': {instead}")
@@ -175,7 +175,7 @@ def _refuse_gone(words: Sequence[str]) -> None:
 
 
 def _refuse_empty(words: Sequence[str]) -> None:
-    """Ends a command line with an option that is given nothing, as by a variable that is not set."""
+    """Ends a command line with an empty option, such as from an unset variable."""
     for word, following in zip(words, [*words[1:], "-"], strict=True):
         option, equals, value = word.partition("=")
         if option.startswith("--") and not (value if equals else following):
@@ -194,7 +194,7 @@ def _require_addresses() -> None:
 
 def fail(message: str) -> NoReturn:
     """Ends the command with a message and exit code 2. Names in it may hold any character, so it is made printable."""
-    with suppress(OutputError):  # nobody can be told
+    with suppress(OutputError):  # no stream is left for messages
         typer.echo(f"hedon: {printable(message)}", err=True)
     give_up()
     sys.exit(2)

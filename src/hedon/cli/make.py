@@ -1,4 +1,4 @@
-"""Makes the runs that a command needs, and shows how they go on and end."""
+"""Makes the runs that a command needs, and shows their progress and results."""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -26,15 +26,15 @@ def make_worlds(
     ray: str | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
 ) -> "tuple[Sequence[Job], dict[Path, str]]":
-    """Makes the worlds that a folder lacks, and says how many there are.
+    """Makes the worlds that a folder lacks, and reports their number.
 
     Args:
-        demands: Which worlds.
-        folder: Of the runs: existing ones are used, missing ones are added.
-        what: What needs them.
-        console: To print to.
-        threads: Of this machine, or of each node; 0 for all.
-        ray: The address of a cluster.
+        demands: Worlds that are needed.
+        folder: Folder of the runs: existing ones are used, missing ones are added.
+        what: Description of what needs them.
+        console: Console to print on.
+        threads: Number of threads on this machine, or on each node; 0 for all.
+        ray: Address of a Ray cluster.
         checkpoint_seconds: Time between two checkpoints [s].
 
     Returns:
@@ -60,10 +60,10 @@ def make_worlds(
 
 
 def require_folder(folder: Path) -> None:
-    """Makes a folder that will be written to, so that a problem with it shows before anything is run.
+    """Creates an output folder, so that problems with it appear before anything is run.
 
     Raises:
-        EnsembleError: It cannot be made or written.
+        EnsembleError: The folder cannot be created or written.
     """
     from hedon.ensemble.error import EnsembleError
 
@@ -76,7 +76,7 @@ def require_folder(folder: Path) -> None:
 
 
 def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: str | None = None) -> dict[Path, str]:
-    """Makes runs: says what they are if they are few, and shows them.
+    """Makes runs and shows their progress; lists them first if they are few.
 
     Returns:
         The status of each that ended, by its folder.
@@ -96,7 +96,7 @@ def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: 
 
 
 def tell_left_out(faults: Sequence[str]) -> None:
-    """Says which runs are not used and why, before others are made in their stead."""
+    """Reports which runs are not used and why, before others are made in their place."""
     for fault in faults:
         typer.echo(f"hedon: note: left out: {fault}", err=True)
 
@@ -104,11 +104,11 @@ def tell_left_out(faults: Sequence[str]) -> None:
 def require_finished(
     jobs: "Sequence[Job]", ends: Mapping[Path, str], console: "Console", again: str = "The same command continues."
 ) -> None:
-    """Ends the command, and says why, unless all runs are finished.
+    """Ends the command with the reason unless all runs are finished.
 
     Raises:
         EnsembleError: A run failed.
-        typer.Exit: Some were interrupted.
+        typer.Exit: Some runs were interrupted.
     """
     from hedon.ensemble.error import EnsembleError
     from hedon.experiment.interrupt import interrupted_code

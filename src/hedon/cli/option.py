@@ -1,4 +1,4 @@
-"""Options that several commands share: declared once, as the fields of a dataclass, and given to a command as one."""
+"""Options shared by several commands: declared once, as fields of a dataclass, and passed to a command together."""
 
 import inspect
 from collections.abc import Callable
@@ -10,7 +10,7 @@ Command = Callable[..., None]
 
 
 def with_options(kind: type) -> Callable[[Command], Command]:
-    """Gives a command the options of a dataclass after its own. The command takes them together, as `options`."""
+    """Adds the options of a dataclass to a command, after its own; the command gets them together, as `options`."""
     hints = get_type_hints(kind, include_extras=True)
     place = inspect.Parameter.KEYWORD_ONLY
     shared = [
@@ -25,7 +25,7 @@ def with_options(kind: type) -> Callable[[Command], Command]:
 
         own = inspect.signature(command, eval_str=True).parameters.values()
         mine = [each for each in own if each.name != "options"]
-        call.__dict__["__signature__"] = inspect.Signature([*mine, *shared])  # what typer reads
+        call.__dict__["__signature__"] = inspect.Signature([*mine, *shared])  # typer reads this
         return call
 
     return wrap

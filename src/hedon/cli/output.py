@@ -1,4 +1,4 @@
-"""What a command prints, where it cannot be printed: a full disk, a closed terminal or pipe."""
+"""Handles output that cannot be written: a full disk, a closed terminal or pipe."""
 
 import errno
 import io
@@ -11,11 +11,11 @@ from hedon.error import HedonError
 
 
 class OutputError(HedonError):
-    """What a command prints cannot be written."""
+    """A command's output cannot be written."""
 
 
 class _Guarded(io.TextIOWrapper):
-    """A stream whose first failure is its last word: a second try, if only to flush, raises it too."""
+    """A stream that raises its first failure again on every later use, even a flush."""
 
     pipe_closed = False
     _failure: OutputError | None = None
@@ -32,14 +32,14 @@ class _Guarded(io.TextIOWrapper):
         try:
             return act(*given)
         except OSError as error:
-            if error.errno == errno.EPIPE:  # its reader has what it wants, as `head` does
+            if error.errno == errno.EPIPE:  # its reader needs no more, as with `head`
                 self._close_pipe()
                 return act(*given)
             self._failure = OutputError(f"cannot write what it prints: {error.strerror}")
             raise self._failure from error
 
     def _close_pipe(self) -> None:
-        """All that is still written goes nowhere, and what runs ends as by a signal."""
+        """Discards all further output, and ends the current work as a signal would."""
         from hedon.experiment.interrupt import PIPE, note
 
         if not pipe_closed():
@@ -51,14 +51,14 @@ class _Guarded(io.TextIOWrapper):
         os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())
 
     def give_up(self) -> None:
-        """Lets all that is still written go nowhere, or Python would complain at its end."""
+        """Discards all further output, since Python would otherwise complain at exit."""
         if self._failure is not None:
             self._failure = None
             self._go_nowhere()
 
 
 def pipe_closed() -> bool:
-    """Whether nobody reads any more what this command prints."""
+    """Whether this command's output is no longer read."""
     return any(isinstance(stream, _Guarded) and stream.pipe_closed for stream in (sys.stdout, sys.stderr))
 
 
@@ -70,10 +70,10 @@ def give_up() -> None:
 
 
 def guard(stream: TextIO | None) -> TextIO:
-    """The stream with failures as `OutputError`; where a terminal or file cannot show a character, as "?"."""
-    if stream is None:  # it was closed, as by `>&-`: nobody wants to read it
+    """Wraps a stream: failures raise `OutputError`, and characters that it cannot show become "?"."""
+    if stream is None:  # the caller closed it, as with `>&-`
         return open(os.devnull, "w", encoding="utf-8")
-    if type(stream) is not io.TextIOWrapper:  # of a test or a notebook
+    if type(stream) is not io.TextIOWrapper:  # from a test or a notebook
         return stream
     encoding, lines, through = stream.encoding, stream.line_buffering, stream.write_through
     return _Guarded(stream.detach(), encoding, "replace", line_buffering=lines, write_through=through)

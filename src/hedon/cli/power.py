@@ -1,4 +1,4 @@
-"""`hedon power`: how many worlds are needed to see an effect?"""
+"""`hedon power`: computes how many worlds are needed to detect an effect."""
 
 from pathlib import Path
 from typing import Annotated
@@ -12,7 +12,7 @@ from hedon.text import brief
 
 
 class PowerError(HedonError):
-    """Arguments of `hedon power` that cannot be used."""
+    """Invalid arguments of `hedon power`."""
 
 
 def power(
@@ -38,9 +38,9 @@ def power(
     level: Annotated[float, typer.Option(help="Of the test.", min=0.0001, max=0.5)] = 0.05,
     out: Annotated[Path | None, typer.Option(help="Folder of the answer; by default none is written.")] = None,
 ) -> None:
-    """Say how many worlds are needed to see an effect, from how much the worlds of a pilot differ.
+    """Compute how many worlds are needed to detect an effect, from the variation among the worlds of a pilot.
 
-    Without --effect it lists the effects that various numbers of worlds would show. docs/guide/compare.md explains it.
+    Without --effect it lists the effects that various numbers of worlds can detect. docs/guide/compare.md explains it.
 
     \b
     Examples:

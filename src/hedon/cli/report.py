@@ -27,9 +27,9 @@ def report(
     """Summarize runs on one page, with figures, tables and the claims of studies about them.
 
     Writes report.html (one file that holds everything, for any browser), report.md, figures/*.svg and analysis/
-    (every number, as JSON and CSV), and RUN/summary.json for each run. Existing files are replaced. Prints our
-    numbers next to those that studies report of the preset. Also works on runs that are still running, were interrupted
-    or have damaged files, which the report points out.
+    (every number, as JSON and CSV), and RUN/summary.json for each run. Existing files are replaced. Prints the
+    results next to those that studies report for the preset. Also works on runs in progress, and on runs that were
+    interrupted or have damaged files; the report points these out.
 
     \b
     Examples:
@@ -40,8 +40,8 @@ def report(
 
 
 def show_report(run: Path, console: "Console", *others: Path, out: Path | None = None, figures: str = "svg") -> None:
-    """Writes a report on one or more runs, and prints their summaries and where the files are."""
-    # Imported here because this takes seconds: neither another command nor the start of a run must wait for it.
+    """Writes a report on one or more runs, and prints their summaries and the paths of the files."""
+    # Imported here because this takes seconds, and neither other commands nor the start of a run must wait for it.
     import json
 
     from hedon.cli.display.step import StepDisplay

@@ -22,7 +22,7 @@ def resume(
 ) -> None:
     """Continue a run, as if it had never stopped.
 
-    Starts from the newest checkpoint. What was recorded after it is removed and computed again, with the same
+    Starts from the newest checkpoint. Later records are removed and computed again, with the same
     bits. A finished run can be made longer with --steps.
 
     \b

@@ -30,7 +30,7 @@ Report = Annotated[bool, typer.Option(help="Write a report at the end; `hedon re
 
 
 class RunError(HedonError):
-    """An argument of `hedon run` that cannot be used."""
+    """Invalid arguments of `hedon run`."""
 
 
 def run(
@@ -76,9 +76,9 @@ def run(
       hedon run my.toml --set food.normal.growth_rate=0.5 --frames 64
       hedon run baseline --founders runs/a@1000000:0.5,runs/b@1000000:0.5
 
-    The environment variable HEDON_BACKEND does for every command what --backend does for this one. hedon resume goes
-    on with the device of the run where it can be used, and otherwise on the processor, with the same bits.
-    HEDON_SCRATCH names a folder for what only learners need, for worlds larger than memory.
+    The environment variable HEDON_BACKEND does for every command what --backend does for this one. hedon resume
+    continues on the run's device if it can be used, and otherwise on the processor, with the same bits.
+    HEDON_SCRATCH names a folder for data that only learners need, for worlds larger than memory.
     """
     from hedon.config.load import load_config
     from hedon.experiment.network import networks_from
@@ -102,7 +102,7 @@ def run(
 
 
 def run_and_report(plan: "RunPlan", go: Callable[["Callback"], "Manifest"], begun: str = "", *, report: bool) -> None:
-    """Prints what will be run, shows progress while it runs, and reports."""
+    """Prints what will be run, shows its progress, and reports."""
     from hedon.cli.display.run import RunDisplay, duration
     from hedon.experiment.device import few_worlds, is_device
     from hedon.experiment.interrupt import interrupted_code
@@ -143,7 +143,7 @@ def require_backend(backend: str | None) -> None:
     """Refuses a value of `--backend` that cannot be used here.
 
     Raises:
-        RunError: There is no such backend, or it cannot be used here.
+        RunError: The backend does not exist, or cannot be used here.
     """
     from hedon import _engine
     from hedon.config.problem import nearest

@@ -1,4 +1,4 @@
-"""`hedon study`: questions, the worlds that answer them, and pages of what came out."""
+"""`hedon study`: questions, the worlds that answer them, and pages with the results."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hedon.study.study import Study
 
 QUICK = ((1,), 2048)
-"""Seeds and steps of a trial that everything works."""
+"""Seeds and steps of a trial that only checks that everything works."""
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -33,7 +33,7 @@ app = typer.Typer(
 
 
 class RunsError(HedonError):
-    """Arguments of a study's command that cannot be used."""
+    """Invalid arguments of a study's command."""
 
 
 Names = Annotated[list[str], typer.Argument(metavar="NAME...", help="Studies, items of them, or all.")]
@@ -56,7 +56,7 @@ Out = Annotated[
 
 @app.command("list")
 def list_studies() -> None:
-    """Name the studies and their items. Other packages may bring studies too.
+    """List the studies and their items, including studies from other packages.
 
     \b
     Example:
@@ -81,7 +81,7 @@ def plan(
     threads: Threads = 0,
     runs: Runs = Path("runs"),
 ) -> None:
-    """Say what each item needs, and measure how long it takes on this machine; nothing is run.
+    """Show what each item needs, and measure how long it takes on this machine; makes no runs.
 
     \b
     Examples:
@@ -115,10 +115,10 @@ def run(
 ) -> None:
     """Make the runs that are missing, then the report.
 
-    Existing runs are used, also longer ones and those of `hedon run`; runs that are too short are continued. Worlds
+    Existing runs are used, including longer ones and those from `hedon run`; shorter runs are continued. Worlds
     that die out count and are never replaced. Ctrl-C ends all runs after their current windows, a second one
-    immediately; the same command continues. At the scale of a paper this takes days: ask `hedon study plan` first.
-    With --part, it makes some of the worlds and no report: several machines share the folder of the runs. With --slurm,
+    immediately; the same command continues. At the scale of a paper this takes days: run `hedon study plan` first.
+    With --part, it makes a part of the worlds and no report, so that machines can share a folder of runs. With --slurm,
     it writes a job array that does so; afterwards, `hedon study report` reads the runs.
 
     \b
@@ -144,7 +144,7 @@ def report(
     runs: Runs = Path("runs"),
     out: Out = None,
 ) -> None:
-    """Make figures, tables, verdicts and one page from the runs that are there.
+    """Make figures, tables, verdicts and one page from existing runs.
 
     \b
     Example:
@@ -159,7 +159,7 @@ def report(
 def _request(
     names: "Sequence[str]", seeds: str | None, steps: int | None, fidelity: str, *, quick: bool = False
 ) -> "tuple[tuple[Study, ...], Request]":
-    # Imported here because this takes seconds: other commands must not wait for it.
+    # Imported here because this takes seconds, and other commands must not wait for it.
     from hedon.config import FIDELITIES
     from hedon.config.problem import nearest
     from hedon.study.catalogue import choose
@@ -185,7 +185,7 @@ def _script(
     runs: Path,
     options: ClusterOptions,
 ) -> None:
-    """Writes the script of a job array. The folder of the runs must be one that all nodes share."""
+    """Writes the script of a job array. All nodes must share the folder of the runs."""
     from hedon.ensemble.demand import worlds_of
     from hedon.study.request import needs
 

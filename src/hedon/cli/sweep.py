@@ -1,4 +1,4 @@
-"""`hedon sweep`: many settings and seeds, and one table of what came out."""
+"""`hedon sweep`: runs many conditions and seeds, and collects the results in one table."""
 
 import shlex
 from pathlib import Path
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from hedon.ensemble.store import Store
 
 PRINTED = 40
-"""Most settings that the end of a sweep prints."""
+"""Maximum number of conditions printed at the end of a sweep."""
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
@@ -42,7 +42,7 @@ Workers = Annotated[int, typer.Option(help="Processes at a time; 0 for all proce
 
 @app.command()
 def plan(file: File, skip_invalid: SkipInvalid = False) -> None:
-    """Say what a sweep would run; nothing is written.
+    """Show what a sweep would run; writes nothing.
 
     \b
     Example:
@@ -74,9 +74,9 @@ def run(
 ) -> None:
     """Run a sweep, then print its table. The same command continues an unfinished sweep.
 
-    Worlds of one setting share a process, and settings take turns. Each finished batch is on disk at once. Ctrl-C or
-    a kill loses no finished batch, and of the others what came after their last checkpoint. If the file has more
-    seeds or values now, only what is missing is run, also by a process that is running the sweep already.
+    Worlds of one condition share a process, and conditions take turns. Each finished batch is written to disk at once;
+    Ctrl-C or a kill loses only what unfinished batches did after their last checkpoint. If the file now has more
+    seeds or values, only missing worlds are run, also by a process that is already running the sweep.
 
     \b
     Examples:
@@ -96,7 +96,7 @@ def resume(
     *,
     options: ClusterOptions,
 ) -> None:
-    """Go on with a sweep from where it lives; its file is not needed.
+    """Continue a sweep from its folder or URL; the sweep file is not needed.
 
     \b
     Example:
@@ -107,7 +107,7 @@ def resume(
 
 @app.command()
 def status(place: Place) -> None:
-    """Say how far a sweep is, and how long the rest will take.
+    """Show how far a sweep is, and how long the rest will take.
 
     \b
     Example:
@@ -129,9 +129,9 @@ def status(place: Place) -> None:
 
 @app.command()
 def collect(place: Place) -> None:
-    """Write one table, a row per world: FOLDER/table.parquet. Also while the sweep runs.
+    """Write one table, a row per world: FOLDER/table.parquet. Works while the sweep runs.
 
-    Columns: condition, number of the repetition, seed, the settings that vary, digest of the world's end, and its
+    Columns: condition, number of the replicate, seed, the settings that vary, digest of the world's end, and its
     part of summary.json. Worlds that died out have a row too.
 
     \b
@@ -156,7 +156,7 @@ def report(
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder of the report; by default FOLDER/report.")] = None,
 ) -> None:
-    """Draw response curves and heat maps with intervals. Also while the sweep runs.
+    """Draw response curves and heat maps with intervals. Works while the sweep runs.
 
     \b
     Examples:
@@ -179,7 +179,7 @@ def report(
 
 
 def _written(file: Path, out: str | None, *, skip_invalid: bool) -> "tuple[SweepPlan, Store]":
-    """The plan of a file, written where the sweep lives."""
+    """The plan of a sweep file, written to the sweep's folder or URL."""
     from hedon.ensemble.plan import write_plan
     from hedon.ensemble.store import Store
     from hedon.sweep.read import read_sweep
@@ -191,7 +191,7 @@ def _written(file: Path, out: str | None, *, skip_invalid: bool) -> "tuple[Sweep
 
 
 def _opened(place: str) -> "tuple[SweepPlan, Store]":
-    """The plan of a sweep that lives somewhere."""
+    """The plan of an existing sweep."""
     from hedon.ensemble.plan import load_plan
     from hedon.ensemble.store import Store
 
@@ -214,7 +214,7 @@ def _say_left_out(asked: "SweepFile", console: "Console") -> None:
 
 
 def _run_or_script(made: "SweepPlan", store: "Store", workers: int, checkpoint: float, options: ClusterOptions) -> None:
-    """Runs a sweep, or writes the script that does. Its folder must be one that all nodes share, or a URL."""
+    """Runs a sweep, or writes a script that does. Its folder must be a URL or shared by all nodes."""
     if not options.slurm:
         _run_and_report(made, store, workers, options.ray, options.part, checkpoint)
         return
@@ -229,7 +229,7 @@ def _run_or_script(made: "SweepPlan", store: "Store", workers: int, checkpoint: 
 def _run_and_report(
     made: "SweepPlan", store: "Store", workers: int, ray: str | None, part: str | None, checkpoint: float
 ) -> None:
-    """Runs what is open, also what is added meanwhile, and prints the table. EnsembleError: a batch failed."""
+    """Runs open batches, including ones added meanwhile, and prints the table. Raises EnsembleError if one failed."""
     from hedon.cli.display.analysis import analysis_group
     from hedon.compare.sweep_answer import settings_table
     from hedon.ensemble.batches import batch_jobs

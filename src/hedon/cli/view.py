@@ -1,4 +1,4 @@
-"""`hedon view`: opens a run, or a live world, in the browser."""
+"""`hedon view`: shows a run, or a live world, in the browser."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class ViewArgumentError(HedonError):
-    """Arguments of `hedon view` that do not go together."""
+    """Incompatible arguments of `hedon view`."""
 
 
 def view(
@@ -37,8 +37,8 @@ def view(
 ) -> None:
     """Watch a run in the browser, or a world that the browser simulates itself.
 
-    Shows positions if the run was made with --frames, and its plots in any case. A run in progress is followed. Ctrl-C
-    stops the server, which can be reached from this machine only, at the link that it prints.
+    Shows positions if the run was made with --frames, and plots for any run. A run in progress is followed. Ctrl-C
+    stops the server, which prints its link and can be reached only from this machine.
 
     \b
     Examples:
@@ -64,7 +64,7 @@ def view(
         raise ViewArgumentError("give the folder of a run, --live for a world in the browser, or --story to read")
     source = (run or DEFAULT_PRESET) if live else ""
     if source:
-        require_live(load_config(source), source)  # whatever is wrong with it is said here
+        require_live(load_config(source), source)  # reports any problem with it here
     if export is not None and export.suffix == ".html":
         if run is not None or live or not article:
             raise ViewArgumentError(
@@ -76,7 +76,7 @@ def view(
     index = None if live or run is None else _index(run)
     front = PAGE if article else "index.html"
     with ThreadPoolExecutor(1) as pool:
-        # The worlds of all presets take seconds to describe: meanwhile there is a link, and the article before them.
+        # Describing the worlds of all presets takes seconds; meanwhile the link and the article are available.
         scenes = pool.submit(story) if article else None
         worlds = pool.submit(_worlds, source)
         data: dict[str, Any] = {"page": lambda: {"run": index is not None, "worlds": worlds.result()}}

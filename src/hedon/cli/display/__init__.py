@@ -1,1 +1,1 @@
-"""What commands print: tables that fit a terminal, summaries, and the progress of runs. The only place of rich."""
+"""Output of commands: tables that fit a terminal, summaries, and the progress of runs. Only this package uses rich."""

@@ -11,7 +11,7 @@ from hedon.report.table import HIDDEN, cells, is_numeric
 
 
 def analysis_group(tables: Mapping[str, ResultTable]) -> Group:
-    """What `hedon analyze` prints: the short tables with their notes."""
+    """Output of `hedon analyze`: the short tables with their notes."""
     parts: list[PrintedTable | Text] = []
     for table in tables.values():
         if table.shown:
@@ -22,6 +22,6 @@ def analysis_group(tables: Mapping[str, ResultTable]) -> Group:
 
 
 def _printed(table: ResultTable) -> PrintedTable:
-    headers, rows = cells(table, (*HIDDEN, "text"))  # a terminal is too narrow for a claim in full
+    headers, rows = cells(table, (*HIDDEN, "text"))  # a terminal is too narrow for the full text of a claim
     text = [i for i in range(len(headers)) if not is_numeric(rows, i)]
     return PrintedTable(headers, rows, title=table.title, text=text)

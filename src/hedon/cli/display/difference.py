@@ -1,4 +1,4 @@
-"""Shows why two runs differ: settings, versions, and the first window and quantity in which their worlds part."""
+"""Shows why two runs differ: settings, versions, and the first window and quantity in which their worlds diverge."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,17 +9,17 @@ if TYPE_CHECKING:
     from hedon.check.difference import Parting
 
 SHOWN = 6
-"""Most quantities of a world that are printed."""
+"""Maximum number of quantities printed per world."""
 
 
 def show_difference(a: Path, b: Path) -> bool:
-    """Compares two runs, their worlds by seeds, as far as both have records.
+    """Compares two runs, with worlds matched by seed, as far as both have records.
 
     Returns:
         Whether settings and records agree; versions and machines are listed but not compared.
 
     Raises:
-        RecordError: A folder holds no run, or a damaged one.
+        RecordError: A folder holds no run or a damaged one.
     """
     from hedon.check.difference import compare_runs
     from hedon.text import printable

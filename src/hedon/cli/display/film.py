@@ -1,4 +1,4 @@
-"""Shows the progress of a video: one line that changes on a terminal, a line from time to time elsewhere."""
+"""Progress of a video: one updated line on a terminal, occasional lines elsewhere."""
 
 import time
 
@@ -14,8 +14,8 @@ class FilmDisplay(Screen):
     """Progress of one video. Use it as a context manager.
 
     Args:
-        console: to print on.
-        rate: pictures per second of the video.
+        console: Console to print on.
+        rate: Pictures per second of the video.
     """
 
     def __init__(self, console: Console, rate: int) -> None:
@@ -25,7 +25,7 @@ class FilmDisplay(Screen):
         self._due = self._begun + self._gap
 
     def update(self, number: int, pictures: int, step: int) -> None:
-        """Shows how far the video is, if enough time has passed."""
+        """Shows the progress, if enough time has passed."""
         if self.is_due():
             left = (time.monotonic() - self._begun) / number * (pictures - number)
             seen = f"{number / self._rate:.0f} s of video"

@@ -19,7 +19,7 @@ _FEEDING = {
 
 
 def _forecast_tables(config: Config, species: str, found: Forecast, steps: int) -> dict[str, ResultTable]:
-    """The tables of a forecast, by name."""
+    """Tables of a forecast, by name."""
     levels = [
         {
             "energy": level.energy,
@@ -94,13 +94,13 @@ def _generation_table(found: Forecast, steps: int) -> ResultTable:
 
 
 def forecast_group(config: Config, species: str, found: Forecast, steps: int) -> Group:
-    """What `hedon forecast` prints.
+    """Output of `hedon forecast`.
 
     Args:
-        config: With the settings of the population.
-        species: Whose.
-        found: What they predict.
-        steps: Length of the run that is planned [step].
+        config: Settings of the world.
+        species: Name of the species.
+        found: The forecast.
+        steps: Length of the planned run [step].
     """
     warnings = [Text.assemble(("! ", "bold"), text) for text in found.warnings]
     return Group(analysis_group(_forecast_tables(config, species, found, steps)), *warnings)

@@ -1,4 +1,4 @@
-"""Shows the progress of several runs: a live table on a terminal, plain lines elsewhere."""
+"""Progress of several runs: a live table on a terminal, plain lines elsewhere."""
 
 import time
 from collections import deque
@@ -17,17 +17,17 @@ from hedon.experiment.plan import Moment
 from hedon.text import printable
 
 SPAN = 60.0
-"""Time over which the speed is measured, so that the forecast follows the sizes of the populations [s]."""
+"""Time over which the speed is measured, so that the remaining time follows changes in population size [s]."""
 MOST_TOLD = 20
-"""Most runs of which each end is told; of more, those that failed alone."""
+"""Maximum number of runs for which every end is reported; with more runs, only failures are."""
 
 
 class JobDisplay(Screen):
     """Progress of all runs of a plan together, and of each current run. Use it as a context manager.
 
     Args:
-        console: to print on.
-        jobs: the plan.
+        console: Console to print on.
+        jobs: Runs of the plan.
     """
 
     def __init__(self, console: Console, jobs: Sequence[Job]) -> None:
@@ -37,24 +37,24 @@ class JobDisplay(Screen):
         self._moments: dict[Path, Moment] = {}
         self._labels = {job.folder: job.label for job in jobs}
         self._done: dict[Path, int] = {}
-        self._before: dict[Path, int] = {}  # what was done of a run before it went on
+        self._before: dict[Path, int] = {}  # world-steps done before this command continued a run
         self._ended = self._ended_done = self._ended_before = 0
         self._seen = deque([(time.monotonic(), 0)])
 
     def update(self, job: Job, moment: Moment) -> None:
-        """Notes a moment of a run. Draws all runs at most five times a second, or prints a line every half minute."""
-        if not self._moments and not self._ended:  # until then workers started
+        """Records a moment of a run. Draws all runs at most five times a second, or prints a line every half minute."""
+        if not self._moments and not self._ended:  # workers were starting until now
             self._seen = deque([(time.monotonic() - moment.seconds, 0)])
         self._moments[job.folder] = moment
         living = len(job.seeds) - len(_ended(job, moment))
-        # Only worlds with living agents have steps still to run.
+        # Only worlds with living agents have steps left.
         self._done[job.folder] = max(0, job.world_steps - living * (job.steps - moment.step))
         self._before.setdefault(job.folder, max(0, job.world_steps - living * (job.steps - moment.first)))
         if self.is_due():
             self._show()
 
     def end(self, job: Job, outcome: Outcome) -> None:
-        """Notes the end of a run and prints a line that says how it ended."""
+        """Records the end of a run, and prints a line with its status."""
         moment = self._moments.pop(job.folder, None)
         done, whole = self._done.pop(job.folder, 0), outcome.status == "finished"
         self._ended += 1
@@ -109,14 +109,14 @@ class JobDisplay(Screen):
 
 
 def _ended(job: Job, moment: Moment) -> list[int]:
-    """The seeds of the worlds in which nobody is left, of no species."""
+    """Seeds of the worlds in which all species are extinct."""
     gone = _gone(moment)
     species = len(gone) // len(job.seeds)
     return [seed for i, seed in enumerate(job.seeds) if all(gone[i * species : (i + 1) * species])]
 
 
 def _gone(moment: Moment) -> list[bool]:
-    """For each world and species whether nobody is left."""
+    """For each world and species, whether it is extinct."""
     pairs = zip(moment.rows, moment.extinct, strict=True)
     return [extinct is not None or row["alive"] == 0 for row, extinct in pairs]
 

@@ -1,4 +1,4 @@
-"""The items of a request as a table: what each needs, and how long that takes."""
+"""Items of a request as a table, with the needs and time of each."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -16,7 +16,7 @@ from hedon.text import count
 
 
 def catalogue(studies: Iterable[Study]) -> Group:
-    """What `hedon study list` prints: a table of items for each study, below its question."""
+    """Output of `hedon study list`: for each study its question and a table of items."""
     parts: list[PrintedTable | Text] = []
     for study in studies:
         rows = [(item.name, item.title) for item in study.items]
@@ -25,11 +25,11 @@ def catalogue(studies: Iterable[Study]) -> Group:
 
 
 def listing(request: Request, cost: RequestCost) -> Group:
-    """What `hedon study plan` prints.
+    """Output of `hedon study plan`.
 
     Args:
-        request: The items that the user asked for.
-        cost: What their runs take [s].
+        request: Items that the user requested.
+        cost: Estimated time of their runs [s].
     """
     rows = [
         (item.name, item.title, _needs(request, item), _time(its.total), _time(its.left))
@@ -52,7 +52,7 @@ def _needs(request: Request, item: Item) -> str:
     if not item.conditions:
         return "only settings"
     scale = request.scale(item)
-    settings = {replace(each, label="", species="") for each in item.conditions}  # whose two species are two conditions
+    settings = {replace(each, label="", species="") for each in item.conditions}  # two species are two conditions
     parts = [count(len(settings), "setting"), count(len(scale.seeds), "world")]
     return ", ".join([*parts, f"{scale.steps:,} steps"])
 

@@ -1,4 +1,4 @@
-"""Shows the progress of a run: a live table on a terminal, plain lines elsewhere."""
+"""Progress of a run: a live table on a terminal, plain lines elsewhere."""
 
 import math
 from collections import deque
@@ -19,7 +19,7 @@ LINE_SECONDS = 10.0
 
 
 def duration(seconds: float) -> str:
-    """A time as people write it: "42 s", "3 min 05 s", "2 h 07 min"."""
+    """Formats a time for readers: "42 s", "3 min 05 s", "2 h 07 min"."""
     whole = round(seconds)
     if whole < 60:
         return f"{whole} s"
@@ -29,15 +29,17 @@ def duration(seconds: float) -> str:
 
 
 class _Speed:
-    """Steps per second over the last seconds, at least over one window: learning at its end takes most of the time."""
+    """Steps per second over the last seconds, and at least one window, as learning at its end takes most of the
+    time.
+    """
 
-    SPAN = 10.0  # seconds
+    SPAN = 10.0  # [s]
 
     def __init__(self) -> None:
         self._seen: deque[tuple[float, int]] = deque()
 
     def update(self, moment: Moment) -> float | None:
-        """The speed, or None before the end of the session's first window."""
+        """Speed, or None before the end of the session's first window."""
         if not self._seen:
             self._seen.append((0.0, moment.first))
         self._seen.append((moment.seconds, moment.step))
@@ -48,7 +50,7 @@ class _Speed:
 
 
 def _head(moment: Moment, speed: float | None, gap: str) -> str:
-    """The run's step, its speed and the time left."""
+    """The run's step, speed and remaining time."""
     place = f"step {moment.step:,} of {moment.steps:,}"
     if speed is None:
         return f"{place}{gap}the speed is known after a window of {moment.window:,} steps"
@@ -56,13 +58,13 @@ def _head(moment: Moment, speed: float | None, gap: str) -> str:
 
 
 def _labels(columns: Columns, seeds: tuple[int, ...]) -> list[str]:
-    """What each row is of: the seed of its world, and its species where there are several."""
+    """Labels of the rows: the seed of the world and, if there are several, the species."""
     species = [f" {name}" for name in columns.species] if columns.several else [""]
     return [f"{seed}{name}" for seed in seeds for name in species]
 
 
 def _when(row: dict[str, Any], extinct: int | None, moment: Moment) -> str:
-    """The step of the row's numbers, where that is not the run's: at the end of the last window."""
+    """Step of the row's numbers, if it differs from the run's: the end of the last window."""
     return "" if extinct is not None or row["step"] == moment.step else f" at step {row['step']:,}"
 
 
@@ -79,9 +81,9 @@ class RunDisplay(Screen):
     """Progress of one run: a progress bar and a table of the worlds on a terminal, plain lines elsewhere.
 
     Args:
-        console: To print on.
-        columns: Of the run's tables.
-        seeds: One per world.
+        console: Console to print on.
+        columns: Columns of the run's tables.
+        seeds: Seeds of the worlds.
     """
 
     def __init__(self, console: Console, columns: Columns, seeds: tuple[int, ...]) -> None:
@@ -130,7 +132,7 @@ class RunDisplay(Screen):
             return [label, "0"]
         eaten = sum(value for name, value in row.items() if name.startswith("eaten_"))
         cells = [label, *(f"{row[name]:,}" for name in ("alive", "births", "deaths"))]
-        known = row["alive"] > 0  # of several species one may be gone while the world lives
+        known = row["alive"] > 0  # a species may be extinct while its world is alive
         cells += [f"{row['energy_mean']:.2f}" if known else "", f"{row['generation_mean']:.1f}" if known else ""]
         cells.append(f"{eaten:,}")
         means = [row[f"{name}_mean"] for name in self._weights]

@@ -1,4 +1,4 @@
-"""Shows what changes: in its place on a terminal, as a plain line now and then elsewhere."""
+"""Shows changing output: updated in place on a terminal, as occasional plain lines elsewhere."""
 
 import time
 from collections.abc import Callable
@@ -13,12 +13,12 @@ LINE_SECONDS = 30.0
 
 
 class Screen:
-    """What all displays of progress have in common. Use it as a context manager.
+    """Base of all progress displays. Use it as a context manager.
 
     Args:
-        console: to print on.
-        line_seconds: between two lines, where there is no terminal [s].
-        clock: the time now [s].
+        console: Console to print on.
+        line_seconds: Time between two lines without a terminal [s].
+        clock: Function that returns the current time [s].
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class Screen:
         return self._clock() >= self._due
 
     def show(self, line: Callable[[], str], picture: Callable[[], RenderableType] | None = None) -> None:
-        """Shows a picture on a terminal, prints a line elsewhere; only the one that is shown is made."""
+        """Shows a picture on a terminal or prints a line elsewhere; creates only the one needed."""
         self._due = self._clock() + self._gap
         if self._live is None:
             self._console.print(Text(line()), soft_wrap=True)

@@ -1,4 +1,4 @@
-"""Says what a command is doing that takes seconds, and how long it will still take; beside its output, on stderr."""
+"""Progress of commands that take seconds: the current step and the remaining time, on stderr."""
 
 import time
 from collections.abc import Callable
@@ -11,16 +11,16 @@ from hedon.cli.display.screen import Screen
 from hedon.text import printable
 
 QUIET_SECONDS = 2.0
-"""So long nothing is said, except on a terminal, where it goes away again [s]."""
+"""Time without any output, except on a terminal, where the output disappears at the end [s]."""
 
 
 class StepDisplay(Screen):
-    """The steps of a command. Use it as a context manager, and call it before each step.
+    """Steps of a command. Use it as a context manager, and call it before each step.
 
     Args:
-        what: the command does.
-        console: to print on; by default that of stderr.
-        clock: the time now [s].
+        what: Description of what the command does.
+        console: Console to print on; by default stderr.
+        clock: Function that returns the current time [s].
     """
 
     def __init__(self, what: str, console: Console | None = None, clock: Callable[[], float] = time.monotonic) -> None:
@@ -28,7 +28,7 @@ class StepDisplay(Screen):
         self._what, self._begun = what, clock()
 
     def __call__(self, done: int, of: int, step: str) -> None:
-        """Says which step comes next, and by the time of those before how long all others take."""
+        """Announces the next step, and the remaining time, estimated from the steps done."""
         seconds = self._clock() - self._begun
         if not self.is_due() or (self._live is None and seconds < QUIET_SECONDS):
             return

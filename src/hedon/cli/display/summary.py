@@ -1,4 +1,4 @@
-"""A run's summary for the terminal: its figures beside those that sources of studies report, then world by world."""
+"""A run's summary for the terminal: its numbers next to those from the sources of studies, then world by world."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from hedon.report.table import NOTHING, format_number
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.text import count
 
-_WORLD_COLUMNS = {  # key of a world: header
+_WORLD_COLUMNS = {  # header by key of a world
     "seed": "seed",
     "steps": "steps",
     "steps_per_second": "steps/s",
@@ -29,7 +29,7 @@ _WORLD_COLUMNS = {  # key of a world: header
 
 
 def summary_table(summary: Mapping[str, Any]) -> Group:
-    """What `hedon run` and `hedon report` print at the end: where there are several species, of each."""
+    """Final output of `hedon run` and `hedon report`; with several species, it covers each."""
     notes = []
     if summary["extinct_worlds"]:
         notes.append(
@@ -55,7 +55,7 @@ def summary_table(summary: Mapping[str, Any]) -> Group:
 
 
 def answer_lines(answers: Mapping[str, Sequence[str]]) -> Iterator[Text]:
-    """What `hedon run` and `hedon report` say last: what evolved, in words."""
+    """Last lines of `hedon run` and `hedon report`: what evolved, in words."""
     for condition, lines in answers.items():
         yield Text(f"What evolved in {condition}?", style="bold")
         yield from (Text(f"  {line}") for line in lines)
@@ -63,7 +63,7 @@ def answer_lines(answers: Mapping[str, Sequence[str]]) -> Iterator[Text]:
 
 @dataclass(frozen=True)
 class _Part:
-    """One species of a summary: its name, empty where there is only one, its means, and how it fares in each world."""
+    """One species in a summary: its name, empty if it is the only one, its means, and its numbers in each world."""
 
     species: str
     means: Mapping[str, Any]
@@ -71,13 +71,13 @@ class _Part:
 
     @property
     def shown(self) -> list[str]:
-        """The weights, and of the neutral genes the first."""
+        """The weights, and the first neutral gene."""
         neutral = [name for name in self.means["weights"] if name.startswith("neutral_")]
         return [name for name in self.means["weights"] if name not in neutral[1:]]
 
 
 def _parts(summary: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any], Sequence[Mapping[str, Any]]]]:
-    """The species of a summary, for `_Part`."""
+    """Yields the species of a summary, as arguments of `_Part`."""
     if "species" not in summary:
         yield "", summary, summary["worlds"]
     for name, means in summary.get("species", {}).items():
@@ -109,7 +109,7 @@ def _over_worlds(summary: Mapping[str, Any], part: _Part) -> list[PrintedTable |
 
 
 def _name(summary: Mapping[str, Any]) -> str:
-    """What was run: "baseline (corrected)", or "mushrooms (baseline, corrected, modified)"."""
+    """Name of what was run: "baseline (corrected)", or "mushrooms (baseline, corrected, modified)"."""
     name = summary["name"] or summary["preset"] or "run"
     preset = summary["preset"] if summary["preset"] != name else None
     remarks = [text for text in (preset, summary["fidelity"], "modified" if summary["modified"] else None) if text]
@@ -117,7 +117,7 @@ def _name(summary: Mapping[str, Any]) -> str:
 
 
 def _world_by_world(summary: Mapping[str, Any], parts: Sequence[_Part]) -> PrintedTable:
-    """A row per world; where there are several species one for each, below one of the totals."""
+    """A row per world; with several species, a row of totals, then one for each species."""
     several = bool(parts[0].species)
     known = {key for part in parts for fare in part.fares for key in (*fare, "steps", "steps_per_second")}
     keys = [key for key in list(_WORLD_COLUMNS)[1:] if key in known]

@@ -1,6 +1,6 @@
-"""Tables on a terminal of any width: what does not fit beside the rest is continued below.
+"""Tables for terminals of any width: columns that do not fit are continued below.
 
-In a file each row is one line, for programs that read it.
+In a file, each row is one line, for programs that read it.
 """
 
 from collections.abc import Iterable, Sequence
@@ -12,13 +12,13 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-_GAP, _EDGES = 3, 2  # blanks between two columns, and at both ends of a row
-_READABLE = 16  # width that a column of text keeps at least, where it needs as much
+_GAP, _EDGES = 3, 2  # blanks between two columns, and in total at the ends of a row
+_READABLE = 16  # minimum width of a text column, if its text is as long
 
 
 @dataclass(frozen=True)
 class _Column:
-    """A column and the widths between which it is well drawn: numbers are not broken, words go onto further lines."""
+    """A column with its minimum and maximum width: numbers are never broken, words may wrap."""
 
     header: str
     cells: tuple[str, ...]
@@ -28,18 +28,18 @@ class _Column:
 
 
 class PrintedTable:
-    """A table for a console, which may be narrower than the table.
+    """A table for a console that may be narrower than the table.
 
-    Where it does not fit, columns of text are made narrower; where that is not enough, columns are continued in a
-    further table below, which begins with the columns that tell the rows apart.
+    If the table does not fit, text columns are narrowed. If that is not enough, columns continue in a further table
+    below, which repeats the columns that identify the rows.
 
     Args:
-        headers: of the columns.
-        rows: cells of each; those that are missing at its end are empty.
-        title: above the table; none where it is empty.
-        text: which columns hold text, on the left side; the others hold numbers, on the right side.
-        dim: rows that are printed dim.
-        total: whether the last row is the sum of the others.
+        headers: Headers of the columns.
+        rows: Cells of each row; missing cells at its end are empty.
+        title: Title above the table; "" for none.
+        text: Indices of text columns, which are left-aligned; the others hold numbers and are right-aligned.
+        dim: Indices of rows to print dim.
+        total: Whether the last row is the sum of the others.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class PrintedTable:
         self._keys = _key_count(self._columns)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Gives the title and the tables that fit into the width at hand."""
+        """Yields the title and the tables that fit into the available width."""
         if self._title:
             yield Text(self._title, style="bold")
         if console.is_terminal:
@@ -74,7 +74,7 @@ class PrintedTable:
             yield from console.render(self._draw(self._columns, whole, shorten=False), options.update_width(whole))
 
     def _parts(self, width: int) -> list[list[_Column]]:
-        """The columns of each table, from top to bottom."""
+        """Columns of each table, from top to bottom."""
         keys, parts = self._columns[: self._keys], [self._columns[: self._keys]]
         for column in self._columns[self._keys :]:
             if _needed([*parts[-1], column]) > width and len(parts[-1]) > len(keys):
@@ -105,7 +105,7 @@ def _column(header: str, cells: tuple[str, ...], *, is_text: bool) -> _Column:
 
 
 def _once(labels: Sequence[str]) -> list[str]:
-    """The same labels, but a long one that stands in several rows in succession only in the first."""
+    """The labels, with repetitions of a long one in successive rows left blank."""
     return [
         "" if len(label) > _READABLE and label == before else label
         for label, before in zip(labels, ["", *labels], strict=False)
@@ -113,8 +113,10 @@ def _once(labels: Sequence[str]) -> list[str]:
 
 
 def _key_count(columns: Sequence[_Column]) -> int:
-    """How many columns, from the left, tell all rows apart: texts, or numbers of settings, of at most half of them.
-    Where these do not, the columns of text at the left, but the first in any case.
+    """Number of columns, from the left, that identify all rows: text, or numbers of settings, at most half of the
+    columns.
+
+    If these do not suffice, the text columns on the left, and in any case the first column.
     """
     rows = list(zip(*(column.cells for column in columns), strict=True))
     texts = next((i for i, column in enumerate(columns) if i > 0 and not column.is_text), len(columns))
@@ -129,7 +131,7 @@ def _needed(columns: Sequence[_Column]) -> int:
 
 
 def _widths(columns: Sequence[_Column], width: int) -> list[int]:
-    """A width per column: all need no more than the table's, except on a terminal of a few letters."""
+    """Width of each column; their sum fits the table's width, except on a terminal of a few letters."""
     widths = [column.least for column in columns]
     spare = width - _needed(columns)
     while spare > 0 and any(own < column.most for own, column in zip(widths, columns, strict=True)):
