@@ -1,4 +1,4 @@
-"""What follows from the settings alone, before any run: lives, births, room for newborns, and what limits a world."""
+"""Predictions from settings, before any run: lives, births, space for newborns, and what limits a world."""
 
 from lazy_loader import attach_stub
 

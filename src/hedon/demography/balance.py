@@ -1,4 +1,4 @@
-"""The energy that grows as food, and what agents with a fresh policy are charged."""
+"""Energy that grows as food, and energy that agents with a fresh policy are charged."""
 
 import math
 from collections.abc import Callable
@@ -16,18 +16,18 @@ def need(own: SpeciesConfig) -> float:
 
 
 def gains(config: Config, own: SpeciesConfig) -> dict[str, float]:
-    """The energy that a species gains by a piece of each kind of food that it eats; negative for poison."""
+    """Energy that a species gains from a piece of each kind of food that it eats; negative for poison."""
     eaten = diet(config, own)
     return {kind: eaten[kind] * food.gives.get("energy", 0.0) for kind, food in config.food.items() if kind in eaten}
 
 
 def feeding(config: Config, own: SpeciesConfig) -> dict[str, float]:
-    """The energy that a species gains by a piece of each kind of food that feeds it."""
+    """Energy that a species gains from a piece of each kind of food that feeds it."""
     return {kind: energy for kind, energy in gains(config, own).items() if energy > 0}
 
 
 def supply(config: Config, own: SpeciesConfig, factor: Callable[[FoodConfig], float]) -> float:
-    """Energy that grows as food that a species eats [energy/step]."""
+    """Energy that grows as food for a species [energy/step]."""
     return sum(
         config.food[kind].growth_rate * factor(config.food[kind]) * energy
         for kind, energy in feeding(config, own).items()
@@ -35,11 +35,11 @@ def supply(config: Config, own: SpeciesConfig, factor: Callable[[FoodConfig], fl
 
 
 def fed(config: Config, own: SpeciesConfig, supplied: float) -> float:
-    """Agents that a supply pays for; infinite if living costs nothing, NaN if the species eats no food.
+    """Number of agents that a supply can feed; infinite if living costs nothing, NaN if the species eats no food.
 
     Args:
         config: Settings of the world, for its foods.
-        own: The species.
+        own: Settings of the species.
         supplied: Energy that grows as food [energy/step].
     """
     if not gains(config, own):

@@ -1,4 +1,4 @@
-"""How often an agent that has learned nothing comes upon a place of food."""
+"""How often an agent that has learned nothing encounters places of food."""
 
 import math
 from collections.abc import Sequence
@@ -14,13 +14,13 @@ from hedon.demography.food_place import throw
 from hedon.demography.motion import unlearned_walk
 from hedon.demography.placement import is_within_walls
 
-spatial: Any = load("scipy.spatial", suppress_warning=True)  # takes a fifth of a second to load
+spatial: Any = load("scipy.spatial", suppress_warning=True)  # takes a fifth of a second to import
 
 BINS = 16
-"""Parts of the time since birth, in each of which a rate is a mean."""
+"""Number of intervals of the time since birth; rates are means within each."""
 _WALKERS = 512
-_STRIDE = 4  # steps between two looks at who touches what: an agent moves less than a unit of length in a step
-_PAUSE = 64  # a touch that follows another one within this time belongs to the same visit [step]
+_STRIDE = 4  # steps between two checks for touches: an agent moves less than a unit of length in a step
+_PAUSE = 64  # touches within this time after another belong to the same visit [step]
 
 Floats = NDArray[np.float64]
 
@@ -30,15 +30,15 @@ def encounter_rates(
 ) -> Floats:
     """Visits of an agent's mouth to a place of food, by the time since the agent was born.
 
-    Agents start at uniform places and walk as in `hedon.demography.motion`. A mouth that touches a place has visited
-    it, and visits it again once it has been away.
+    Agents start at uniformly distributed places and walk as in `hedon.demography.motion`. A mouth visits a place when
+    it touches it, and visits it again after it has been away.
 
     Args:
         config: Settings of the world.
-        own: The species.
+        own: Settings of the species.
         places: Centers of places [u], (places, 2) for each kind of food.
         steps: Length of the walk [step].
-        rng: Source of the walks.
+        rng: Random number generator for the walks.
 
     Returns:
         Visits per agent, place and step, (kinds, BINS), over equal parts of the time; 0 for a kind without places.
@@ -71,7 +71,7 @@ def encounter_rates(
         ahead = (toward * (heading[who] * middle).conj()).real
         touches = ahead >= edge * np.abs(toward)
         since = step - left[who, what]
-        new = touches & (since > _PAUSE) & (step > _STRIDE)  # nothing grows where an agent is
+        new = touches & (since > _PAUSE) & (step > _STRIDE)  # nothing grows under an agent
         visits[:, (step - 1) * BINS // steps] += np.bincount(kind[what[new]], minlength=len(places))
         stays = touches | (since <= _PAUSE) | (step == _STRIDE)
         left[who[stays], what[stays]] = step
@@ -79,15 +79,15 @@ def encounter_rates(
 
 
 def gaps(config: Config, own: SpeciesConfig, scene: Floats) -> float:
-    """Foods per food at a distance at which a body gets stuck between the two, out of reach of its mouth.
+    """Number of neighbors per food at a distance at which a body gets stuck between the two, out of its mouth's reach.
 
-    Food is solid. Two pieces stop a body that meets both at once; its mouth reaches neither if they are further apart
-    than the mouth is wide, and the body does not pass between them if they are nearer than it is.
+    Food is solid. Two pieces stop a body that meets both at once. Its mouth reaches neither if they are further apart
+    than the mouth is wide, and the body does not pass between them if they are closer than its own width.
 
     Args:
-        config: For the size of food.
-        own: The species.
-        scene: Places that are taken at once [u], (foods, 2).
+        config: Settings of the world, for the size of food.
+        own: Settings of the species.
+        scene: Places occupied at the same time [u], (foods, 2).
     """
     if len(scene) < 2:
         return 0.0

@@ -1,4 +1,4 @@
-"""Where births and deaths, meals and costs balance, and how long a generation is there."""
+"""Equilibria of births and deaths, of meals and costs, with the length of a generation."""
 
 import math
 from collections.abc import Callable
@@ -24,10 +24,10 @@ class Equilibrium:
     """A population of constant size at constant energy.
 
     Attributes:
-        feeding: What they eat: "unlearned", what agents come upon that have learned nothing; "all", all that grows, in
-            equal shares; "full", as much as they can hold, as some do where others starve.
+        feeding: What agents eat: "unlearned", what agents that have learned nothing encounter; "all", everything that
+            grows, in equal shares; "full", as much as they can hold, as some do when others starve.
         alive: Number of agents; 0 if they die out.
-        energy: Energy of each [energy]; NaN if they die out.
+        energy: Energy of each agent [energy]; NaN if they die out.
         lifetime: Mean age at death [step]; NaN if they die out.
         generation: Mean age of a parent when a child is born [step]; NaN if they die out.
     """
@@ -40,10 +40,11 @@ class Equilibrium:
 
 
 def equilibria(config: Config, species: str, ground: Ground, success: Floats) -> tuple[Equilibrium, ...]:
-    """The population at which a species settles, if its agents never learn and if they eat all that grows.
+    """Equilibria of a species if its agents never learn, if they eat everything that grows, and if they are always
+    full.
 
-    In both, all have the same energy. In a run some eat far more than others, and have most of the children; the last
-    equilibrium, of agents that are always full, therefore bounds the length of a generation.
+    In each, all agents have the same energy. In a run some eat far more than others, and have most of the children; the
+    last equilibrium, of agents that are always full, therefore bounds the length of a generation.
     """
     own = config.species[species]
     if not gains(config, own):
@@ -58,7 +59,7 @@ def equilibria(config: Config, species: str, ground: Ground, success: Floats) ->
 
 
 def _met(config: Config, species: str, ground: Ground) -> Callable[[float, float], float]:
-    """The energy that a number of agents of a mean age find in a step without learning [energy/step]."""
+    """Function for the energy per step of a number of agents with a mean age, without learning [energy/step]."""
     own = config.species[species]
     value = gains(config, own)
     energy = np.array([value.get(kind, 0.0) for kind in config.food])
@@ -83,7 +84,7 @@ def _met(config: Config, species: str, ground: Ground) -> Callable[[float, float
 
 
 def _settle(how: str, own: SpeciesConfig, success: Floats, found: Callable[[float, float], float]) -> Equilibrium:
-    """The equilibrium for the energy that a number of agents of a mean age finds [energy/step]."""
+    """Equilibrium, given the energy that a number of agents with a mean lifetime find [energy/step]."""
     hazard, birth = mean_hazard(own), birth_of(own)
     pairs = 0.5 if own.birth.mating == "pairs" else 1.0
     falling = np.minimum.accumulate(success)
@@ -92,12 +93,12 @@ def _settle(how: str, own: SpeciesConfig, success: Floats, found: Callable[[floa
         return pairs * float(reproduction_number(hazard, birth, energy)) if own.birth.kappa else 0.0
 
     def room(energy: float) -> float:
-        """Agents at which births and deaths balance, at an energy; 0 if deaths prevail in any case."""
+        """Number of agents at which births and deaths balance, at an energy; 0 if deaths always prevail."""
         r0 = births(energy)
         return float(np.interp(-1.0 / r0, -falling, np.arange(len(falling)))) if r0 > 1 else 0.0
 
     def surplus(energy: float) -> float:
-        """Energy that an agent gains in a step when as many live as there is room for [energy/step]."""
+        """Energy gained per agent and step when the number of agents is in balance [energy/step]."""
         alive, lifetime = max(room(energy), 1.0), float(expected_lifetime(hazard, energy))
         lost = energy * (own.energy.decay + (1.0 / lifetime if lifetime > 0 else 1.0))
         return found(alive, lifetime) / alive - need(own) - lost

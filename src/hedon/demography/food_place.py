@@ -1,4 +1,4 @@
-"""Where food can lie: places drawn from the law of a kind, and how many foods fit there at once."""
+"""Places of food: draws from the law of a kind, and the number of foods that fit there at once."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,15 +12,15 @@ from hedon.config import Config
 from hedon.config.schema.food import FoodConfig
 from hedon.demography.placement import is_within_walls
 
-spatial: Any = load("scipy.spatial", suppress_warning=True)  # takes a fifth of a second to load
+spatial: Any = load("scipy.spatial", suppress_warning=True)  # takes a fifth of a second to import
 
 TRIES = 20_000
 """Places that the engine tries for each founder and each food of a new world (`world/population.h`)."""
 SCENES = 4
-"""Times that the places of a kind are filled, to find how many there are."""
+"""Number of times that a kind's places are filled to estimate how many there are."""
 _BATCH = 512  # places drawn at once
-_SAMPLE = 512  # places kept, at most
-_PARTS = 16  # of the time of a forecast, in each of which a center that drifts stands still
+_SAMPLE = 512  # maximum number of places kept
+_PARTS = 16  # intervals of a forecast; a drifting center is fixed within each
 
 Floats = NDArray[np.float64]
 
@@ -28,15 +28,15 @@ Floats = NDArray[np.float64]
 def draw_food_places(
     config: Config, food: FoodConfig, count: int, step: float, rng: np.random.Generator, turn: int = 0
 ) -> Floats:
-    """Draws places as the engine does for new food; some may lie outside the arena.
+    """Draws places as the engine does for new food; some may be outside the arena.
 
     Args:
-        config: For the arena.
-        food: Kind with its law.
+        config: Settings of the world, for the arena.
+        food: Settings of the kind, with its law.
         count: Number of places.
-        step: When food appears there, for centers that drift [step].
-        rng: Source of the draws.
-        turn: Which center is used, of centers that take turns.
+        step: Step at which the food appears, for drifting centers [step].
+        rng: Random number generator.
+        turn: Index of the center to use, if centers take turns.
 
     Returns:
         Centers [u], shape (count, 2).
@@ -59,15 +59,15 @@ def throw(
     tries: int = TRIES,
     budget: float = np.inf,
 ) -> Floats:
-    """Puts things one after another at the first place drawn that is free.
+    """Puts things one after another at the first free place drawn.
 
     Args:
-        draw: Draws n places, (n, 2).
-        free: Which places are free of everything else, (n,).
-        reach: Least distance between two of the things [u].
+        draw: Function that draws n places, (n, 2).
+        free: Function that tells which places are otherwise free, (n,).
+        reach: Minimum distance between two of the things [u].
         count: Number of things.
-        tries: Places tried for each of them; if none is free, the rest is given up.
-        budget: Places tried for all of them.
+        tries: Number of places tried for each; if none is free, the rest is given up.
+        budget: Number of places tried for all of them.
 
     Returns:
         Centers of those that found a place [u], (found, 2).
@@ -92,14 +92,14 @@ def throw(
 
 @dataclass(frozen=True)
 class FoodPlaces:
-    """The places of one kind of food while no agent is there.
+    """The places of one kind of food in the absence of agents.
 
     Attributes:
-        limit: Foods that find a place in the time of a forecast if none is eaten, at most the capacity of the kind; of
-            centers that take turns, around one of them.
-        share: Share of the places drawn that lie within the arena.
+        limit: Number of foods that find a place during a forecast if none is eaten, at most the capacity of the kind;
+            around one center, if centers take turns.
+        share: Share of the drawn places that are within the arena.
         sample: Some of the places [u], (places, 2).
-        scene: Places that are taken at once [u], (foods, 2).
+        scene: Places occupied at the same time [u], (foods, 2).
     """
 
     limit: float
@@ -109,13 +109,13 @@ class FoodPlaces:
 
 
 def food_places(config: Config, food: FoodConfig, steps: int, rng: np.random.Generator) -> FoodPlaces:
-    """Finds how many foods of a kind fit where its law puts them, by putting them there.
+    """Estimates how many foods of a kind fit where its law puts them, by placing them.
 
     Args:
-        config: For arena and sizes.
-        food: Kind of food.
+        config: Settings of the world, for the arena and sizes.
+        food: Settings of the kind.
         steps: Time for which the engine tries [step].
-        rng: Source of the draws.
+        rng: Random number generator.
     """
     turns = len(food.placement.centers) if food.placement.form == "switching" else 1
     scenes = [_fill(config, food, steps, rng, scene % turns) for scene in range(SCENES)]
@@ -132,7 +132,7 @@ def food_places(config: Config, food: FoodConfig, steps: int, rng: np.random.Gen
 
 
 def _fill(config: Config, food: FoodConfig, steps: int, rng: np.random.Generator, turn: int) -> Floats:
-    """Places of foods that grow and are not eaten: a center that drifts leaves them behind."""
+    """Places of foods that grow and are not eaten; a drifting center leaves them behind."""
     radius, moves = config.world.food_radius, any(food.placement.drift)
     reach = max(2 * radius, food.placement.spacing)
     parts = _PARTS if moves else 1
@@ -159,7 +159,7 @@ def _fill(config: Config, food: FoodConfig, steps: int, rng: np.random.Generator
 
 
 def missing_at_start(config: Config, rng: np.random.Generator) -> str:
-    """What finds no place when a world is made, in words; empty if all founders and first foods do."""
+    """Description of what finds no place in a new world; empty if all founders and initial foods fit."""
     size = np.array([config.arena.width, config.arena.height])
     bodies, radii = np.empty((0, 2)), np.empty(0)
 

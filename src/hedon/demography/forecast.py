@@ -1,4 +1,4 @@
-"""What can be said of a setting before it is run: can it live, can it die, and what will limit it?"""
+"""Forecast of a condition before it is run: whether its population can grow, can die out, and what limits it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -18,29 +18,29 @@ from hedon.demography.placement import placement_success
 from hedon.demography.schedule import mean_factor
 from hedon.demography.warning import warnings
 
-_SEED = 1  # of the scenes in which places are sampled, so that a setting gets the same answer again
-_SIZES = 11  # numbers of agents at which places are sampled
-_STARTS = 4  # scenes that show whether a world can be made
+_SEED = 1  # of the scenes in which places are sampled, so that a condition always gets the same forecast
+_SIZES = 11  # numbers of agents for which places are sampled
+_STARTS = 4  # scenes that test whether a world can be created
 
 
 @dataclass(frozen=True)
 class Forecast:
-    """What a setting promises.
+    """Forecast of a condition.
 
     Attributes:
-        levels: lives at some energies; where the chance of death follows a schedule, at its mean factor.
-        room: chances of finding a place.
-        need: energy that an agent with a fresh policy is charged [energy/step].
-        supply: energy that grows as food that the species eats [energy/step], at the mean factor of a schedule; poison
+        levels: Lives at some energies; if the probability of death follows a schedule, at its mean factor.
+        room: Probabilities that a newborn finds a place.
+        need: Energy that an agent with a fresh policy is charged [energy/step].
+        supply: Energy that grows as food that the species eats [energy/step], at the mean factor of a schedule; poison
             does not count.
-        fed: agents that the supply pays for, supply / need; infinite where living costs nothing, NaN for a species
-            that eats no food.
-        force: mean norm of the forces of a fresh policy.
-        intake: what is eaten in the first steps of each kind of food that the species eats; empty if a world has no
-            room for what it starts with.
-        equilibria: where births and deaths balance, if agents never learn and if they eat all that grows; empty as
-            `intake`.
-        warnings: what to know before running, in sentences.
+        fed: Number of agents that the supply can feed, supply / need; infinite if living costs nothing, NaN for a
+            species that eats no food.
+        force: Mean norm of the forces of a fresh policy.
+        intake: Amount eaten in the first steps, for each kind of food that the species eats; empty if a world has no
+            room for its initial agents and foods.
+        equilibria: Equilibria of births and deaths, if agents never learn, if they eat everything that grows, and if
+            they are always full; empty under the same condition as `intake`.
+        warnings: Sentences to read before running.
     """
 
     levels: tuple[EnergyLevel, ...]
@@ -55,7 +55,7 @@ class Forecast:
 
 
 def forecast(config: Config, species: str | None = None) -> Forecast:
-    """Computes the forecast of a setting.
+    """Computes the forecast of a condition.
 
     Raises:
         ArgumentError: There is no such species.
@@ -90,7 +90,7 @@ def forecast(config: Config, species: str | None = None) -> Forecast:
 
 
 def setting_warnings(config: Config, species: str | None = None) -> tuple[str, ...]:
-    """What to know of a setting before running, in sentences: those of its forecast that need no samples.
+    """Warnings to read before running a condition: those of its forecast that need no samples.
 
     Raises:
         ArgumentError: There is no such species.
@@ -101,12 +101,12 @@ def setting_warnings(config: Config, species: str | None = None) -> tuple[str, .
 
 
 def _of_mean_founders(config: Config) -> Config:
-    """The config with the numbers that genes set as founders with mean genes have them."""
+    """The config with gene-set numbers as in founders with mean genes."""
     return replace(config, species={name: of_mean_founders(own) for name, own in config.species.items()})
 
 
 def _start_warnings(missing: list[str]) -> Iterator[str]:
-    """What a world has no room for when it is made."""
+    """Warnings about what does not fit into a new world."""
     remedy = "Lower the initial counts, enlarge the arena, or spread the places of food."
     if len(missing) == _STARTS:
         yield f"A run cannot start: there is no room for all that a world begins with; {missing[0]}. {remedy}"
@@ -118,7 +118,7 @@ def _start_warnings(missing: list[str]) -> Iterator[str]:
 
 
 def _dense_warnings(intake: tuple[KindIntake, ...]) -> Iterator[str]:
-    """Foods that lie so densely that how much of them is eaten is not known."""
+    """Warnings about foods that are too dense to predict how much of them is eaten."""
     dense = [each.kind for each in intake if each.dense]
     if dense:
         yield (

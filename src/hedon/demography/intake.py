@@ -1,4 +1,4 @@
-"""What a population eats in the first steps of a world, while its agents have learned little, as mean numbers."""
+"""Mean numbers of what a population eats in the first steps of a world, while its agents have learned little."""
 
 import math
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ from hedon.demography.life import birth_rate, hazard
 from hedon.demography.schedule import birth_of, factor_at, hazard_of, scaled_hazard
 
 FORECAST_STEPS = 2048
-"""Steps of a new world whose intake is forecast: two windows of the presets."""
+"""Steps of a new world covered by the forecast of intake: two windows of the presets."""
 FACTOR = 3.0
 """Factor within which the mean intake of worlds agrees with its forecast, in 19 of 20 settings."""
-_STRIDE = 8  # steps that are computed at once
-_STUCK = 1.0  # gaps per food above which too many bodies get stuck in them for a forecast
+_STRIDE = 8  # steps computed at once
+_STUCK = 1.0  # gaps per food above which too many bodies get stuck for a forecast
 
 Floats = NDArray[np.float64]
 
@@ -32,13 +32,14 @@ class KindIntake:
 
     Attributes:
         kind: Name of the kind.
-        places: Foods that can lie at once where the kind grows; around one center, if centers take turns.
+        places: Number of foods that can be present at once where the kind grows; around one center, if centers take
+            turns.
         growth: Foods that grow [food/step].
-        low: Foods eaten at least, 1/`FACTOR` of the forecast, or 0 if foods are `dense` [food/step].
+        low: Lower bound of foods eaten, 1/`FACTOR` of the forecast, or 0 if foods are `dense` [food/step].
         eaten: Foods eaten [food/step].
-        high: Foods eaten at most, `FACTOR` times the forecast, or all there are [food/step].
-        present: Foods that lie there.
-        dense: Whether bodies get stuck between foods that their mouths do not reach: then what is eaten is not known.
+        high: Upper bound of foods eaten, `FACTOR` times the forecast, or all there are [food/step].
+        present: Number of foods present.
+        dense: Whether bodies get stuck between foods out of their mouths' reach, so that intake cannot be predicted.
     """
 
     kind: str
@@ -53,13 +54,13 @@ class KindIntake:
 
 @dataclass(frozen=True)
 class Ground:
-    """Where food lies and how often an agent comes by while it has learned nothing.
+    """Places of food, and how often an agent that has learned nothing visits them.
 
     Attributes:
-        places: Of each kind of food.
+        places: Places of each kind of food.
         visits: By species, the visits per agent, place and step, (kinds, BINS) over equal parts of the time since
             birth; 0 for a kind that it does not eat.
-        gaps: By species, the gaps between foods that it gets stuck in, per food if all places are taken, (kinds,).
+        gaps: By species, the gaps between foods in which it gets stuck, per food if all places are taken, (kinds,).
     """
 
     places: tuple[FoodPlaces, ...]
@@ -69,7 +70,7 @@ class Ground:
     def mean_visits(self, species: str, age: float) -> Floats:
         """Visits per agent, place and step of a population whose mean age is `age` [step], (kinds,).
 
-        Ages are taken as exponential, and agents beyond the last part of the time as those in it.
+        Ages are assumed to be exponentially distributed; agents beyond the last part of the time count as in it.
 
         Args:
             species: Name of the species.
@@ -80,7 +81,7 @@ class Ground:
 
 
 class _Foods(NamedTuple):
-    """The numbers of foods of each kind, (kinds,) each."""
+    """Numbers of foods of each kind, (kinds,) each."""
 
     stock: Floats
     present: Floats
@@ -88,7 +89,7 @@ class _Foods(NamedTuple):
 
 
 def survey(config: Config, rng: np.random.Generator) -> Ground:
-    """Samples where each kind of food can lie, and how often agents of each species come by."""
+    """Samples the possible places of each kind of food, and how often agents of each species visit them."""
     places = tuple(food_places(config, food, FORECAST_STEPS, rng) for food in config.food.values())
     visits = {}
     for name, own in config.species.items():
@@ -102,13 +103,13 @@ def survey(config: Config, rng: np.random.Generator) -> Ground:
 
 
 def first_intake(config: Config, species: str, ground: Ground, success: Floats) -> tuple[KindIntake, ...]:
-    """Follows the mean numbers of agents, of their energy and of foods through the first steps of a world.
+    """Follows mean numbers of agents, of their energy and of foods through the first steps of a world.
 
-    Foods grow where there is room and are eaten as agents come by. A newborn starts to walk anew, and a birth fails as
-    often as it finds no place. Other species keep their founders.
+    Foods grow where there is room, and agents eat those that they encounter. A newborn starts a new walk, and a birth
+    fails as often as it finds no place. Other species keep their founders.
 
     Returns:
-        One for each kind of food that the species eats.
+        One result for each kind of food that the species eats.
     """
     own, kinds, value = config.species[species], list(config.food.values()), gains(config, config.species[species])
     energy_of = np.array([value.get(kind, 0.0) for kind in config.food])
@@ -118,7 +119,7 @@ def first_intake(config: Config, species: str, ground: Ground, success: Floats) 
     for name, each in config.species.items():
         if name != species:
             others += np.repeat(ground.visits[name], repeats, axis=1) * each.population.initial_count
-    cohorts = np.zeros(FORECAST_STEPS // _STRIDE + 1)  # the living by when they were born
+    cohorts = np.zeros(FORECAST_STEPS // _STRIDE + 1)  # living agents by time of birth
     cohorts[0] = own.population.initial_count
     held = own.energy.initial * cohorts[0]
     foods = _Foods(np.array([float(food.initial_count) for food in kinds]), *np.zeros((2, len(kinds))))
@@ -141,7 +142,7 @@ def first_intake(config: Config, species: str, ground: Ground, success: Floats) 
 
 
 def _mean_intake(kind: str, food: FoodConfig, limit: float, total: float, seen: float, gaps: float) -> KindIntake:
-    """What was eaten of a kind, from sums over the time of a forecast."""
+    """Intake of a kind, from sums over the time of a forecast."""
     factor = factor_at(food.schedule, "growth_rate", np.arange(FORECAST_STEPS))
     growth, eaten, present = food.growth_rate * float(factor.mean()), total / FORECAST_STEPS, seen / FORECAST_STEPS
     most = food.initial_count / FORECAST_STEPS + growth
@@ -159,7 +160,7 @@ def _mean_intake(kind: str, food: FoodConfig, limit: float, total: float, seen: 
 
 
 def _limits(kinds: list[FoodConfig], ground: Ground, eaten: Floats) -> Floats:
-    """Foods of each kind that there is room for, after a number of foods were eaten: centers take turns."""
+    """Number of foods of each kind that fit after some were eaten, since centers take turns."""
     limit = np.array([places.limit for places in ground.places])
     for k, food in enumerate(kinds):
         if food.placement.form == "switching":
@@ -169,13 +170,13 @@ def _limits(kinds: list[FoodConfig], ground: Ground, eaten: Floats) -> Floats:
 
 
 def _covered(config: Config, own: SpeciesConfig, alive: float) -> float:
-    """The share of the arena where agents leave no room for a food."""
+    """Share of the arena in which agents leave no room for food."""
     reach = own.body.radius + config.world.food_radius
     return -math.expm1(-alive * math.pi * reach**2 / (config.arena.width * config.arena.height))
 
 
 def _feed(config: Config, ground: Ground, foods: _Foods, rate: Floats, covered: float, step: int) -> _Foods:
-    """Lets foods grow and be eaten for `_STRIDE` steps, each at a rate [1/step]."""
+    """Lets foods grow and be eaten for `_STRIDE` steps, each kind at its rate [1/step]."""
     kinds = list(config.food.values())
     growth = np.array([food.growth_rate * float(factor_at(food.schedule, "growth_rate", step)) for food in kinds])
     most = np.array([food.capacity * float(factor_at(food.schedule, "capacity", step)) for food in kinds])
@@ -191,7 +192,7 @@ def _feed(config: Config, ground: Ground, foods: _Foods, rate: Floats, covered: 
 
 
 def _live(own: SpeciesConfig, cohorts: Floats, i: int, held: float, gained: float, success: Floats) -> float:
-    """Lets agents pay, die and have children for `_STRIDE` steps; changes the cohorts and returns what all hold."""
+    """Lets agents pay, die and breed for `_STRIDE` steps; changes the cohorts and returns the total energy held."""
     alive = float(cohorts.sum())
     if alive < 1e-6:
         return 0.0

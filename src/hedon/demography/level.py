@@ -15,12 +15,12 @@ class EnergyLevel:
     """A life at constant energy.
 
     Attributes:
-        energy: [energy].
-        lifetime: mean age at death [step].
-        r0: children tried in a whole life; those that find a place are fewer.
-        refusal: share of them that may fail before a lineage shrinks, 1 − 1/r0; 0 where it shrinks in any case.
-        population: agents in the arena at which that share of births fails: the number that room allows at this
-            energy; the capacity where more would find places, NaN where the lineage shrinks in any case.
+        energy: The constant energy [energy].
+        lifetime: Mean age at death [step].
+        r0: Attempted births in a whole life; fewer find a place.
+        refusal: Share of births that may fail before a lineage shrinks, 1 − 1/r0; 0 if it shrinks in any case.
+        population: Number of agents in the arena at which that share of births fails: the number that room allows at
+            this energy; the capacity if more would find places, NaN if the lineage shrinks in any case.
     """
 
     energy: float
@@ -32,7 +32,7 @@ class EnergyLevel:
 
 @dataclass(frozen=True)
 class Room:
-    """The chance that a birth finds a place (and a slot), by agents in the arena."""
+    """Probability that a birth finds a place (and a slot), by the number of agents in the arena."""
 
     alive: int
     success: float
@@ -55,7 +55,7 @@ def _level(own: SpeciesConfig, energy: float, places: tuple[Room, ...]) -> Energ
 
 
 def _alive_at(success: float, places: tuple[Room, ...]) -> float:
-    """The number of agents at which the chance of a place has fallen to a value; the largest where it has not."""
+    """Number of agents at which the probability of a place has fallen to a value; the maximum if it never does."""
     falling = np.minimum.accumulate([room.success for room in places])
     alive = np.array([room.alive for room in places], np.float64)
     if success < falling[-1]:

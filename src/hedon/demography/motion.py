@@ -1,4 +1,4 @@
-"""How agents that have learned nothing move: free bodies with random actions, walls, and no other agents.
+"""Motion of agents that have learned nothing: free bodies with random actions, walls, and no other agents.
 
 Places and velocities are complex numbers, x + iy, so that a rotation is a product.
 """
@@ -31,18 +31,18 @@ def fresh_force(motor: MotorConfig) -> float:
 def unlearned_walk(
     config: Config, own: SpeciesConfig, place: Points, steps: int, rng: np.random.Generator
 ) -> Iterator[tuple[Points, Points]]:
-    """Moves agents as the engine does while their policies are new, as if each were alone.
+    """Moves agents as the engine does while their policies are new, ignoring other agents.
 
     A new policy draws raw actions that are nearly standard normal, whatever it observes. A step is computed at once:
     its force acts in the first substep, and damping leaves a geometric series. A wall stops a body, and friction makes
     it roll, so that it turns to face the wall and mostly stays there. Obstacles are ignored.
 
     Args:
-        config: Arena and physics.
+        config: Settings of the arena and the physics.
         own: Body, motors and policy of the species; "idle" agents rest.
-        place: Centers at the start [u], shape (agents,).
+        place: Initial centers [u], shape (agents,).
         steps: Length of the walk [step].
-        rng: Source of headings and actions.
+        rng: Random number generator for headings and actions.
 
     Yields:
         Centers [u] and headings (of length 1) after each step, (agents,) each; the arrays are reused.
@@ -88,9 +88,9 @@ class _Boundary:
         self.radius, self.friction = radius, config.physics.friction
 
     def stop(self, place: Points, velocity: Points, spin: Floats) -> None:
-        """Moves bodies out of walls, takes the velocity with which they enter, and makes them roll along, in place."""
+        """Moves bodies out of walls, removes the velocity into the wall, and makes them roll along it, in place."""
         gap = np.outer(place.real, self.inward.real) + np.outer(place.imag, self.inward.imag) - self.offset
-        deepest = gap.argmin(axis=1)  # the other wall of a corner has its turn in the next step
+        deepest = gap.argmin(axis=1)  # the other wall of a corner follows in the next step
         depth = -gap[np.arange(len(place)), deepest]
         at = np.flatnonzero(depth >= 0)
         self._meet(at, self.inward[deepest[at]], depth[at], place, velocity, spin)
@@ -106,11 +106,11 @@ class _Boundary:
     def _meet(
         self, at: NDArray[np.intp], normal: Points, depth: Floats, place: Points, velocity: Points, spin: Floats
     ) -> None:
-        """The contact of some bodies with a wall, whose normals point away from it."""
+        """Contact of some bodies with a wall, with normals that point away from it."""
         place[at] += depth * normal
-        speed = velocity[at] * normal.conj()  # along the normal, and along the wall
+        speed = velocity[at] * normal.conj()  # along the normal and along the wall
         into = np.minimum(speed.real, 0.0)
         slide = speed.imag - self.radius * spin[at]
-        grip = np.clip(-slide / 3.0, self.friction * into, -self.friction * into)  # of a disc: 1/(1 + m r²/I) = 1/3
+        grip = np.clip(-slide / 3.0, self.friction * into, -self.friction * into)  # for a disc: 1/(1 + m r²/I) = 1/3
         velocity[at] += (-into + 1j * grip) * normal
         spin[at] -= 2.0 * grip / self.radius

@@ -1,4 +1,4 @@
-"""How often does a newborn find a free place? Sampled, by throwing agents and places at random."""
+"""Probability that a newborn finds a free place, sampled by placing agents and foods at random."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -16,8 +16,8 @@ spatial: Any = load("scipy.spatial", suppress_warning=True)
 
 SCENES = 12
 """Random scenes per number of agents; each is tried with every agent as a parent."""
-_BATCH = 256  # places thrown at once, at most
-_THROWS = 200  # of a batch; a scene too full for these stays with fewer agents
+_BATCH = 256  # maximum number of places drawn at once
+_THROWS = 200  # batches; a scene too full for these stays with fewer agents
 
 Floats = NDArray[np.float64]
 
@@ -25,27 +25,27 @@ Floats = NDArray[np.float64]
 def placement_success(
     config: Config, species: str, sizes: Sequence[int], rng: np.random.Generator, scenes: int = SCENES
 ) -> Floats:
-    """The chance that a birth finds a place among some numbers of agents, in scenes as at the start of a run.
+    """Probability that a birth finds a place, for some numbers of agents, in scenes as at the start of a run.
 
-    Agents and the foods of the start lie at random without overlap; a parent, any of them, tries as many
-    Gaussian places around itself as it may. In a run agents gather where food is, and foods are fewer, so
-    this is a guide, not a prediction.
+    Agents and the initial foods are placed at random without overlap; a parent, any of them, tries as many Gaussian
+    places around itself as allowed. In a run agents gather near food, and foods are fewer, so this is a guide, not a
+    prediction.
 
     Returns:
-        One chance per size, (sizes,).
+        One probability per size, (sizes,).
     """
     return np.mean([_scene_success(config, species, sizes, rng) for _ in range(scenes)], axis=0)
 
 
 def is_free(config: Config, radius: float, places: Floats, agents: Floats, foods: Floats) -> NDArray[np.bool_]:
-    """Which places an agent's disc fits at: within the walls, clear of all agents and foods.
+    """Whether an agent's disc fits at each place: within the walls, clear of all agents and foods.
 
     Args:
-        config: the settings.
-        radius: of the disc, and of all agents [u].
-        places: centers [u], shape (n, 2).
-        agents: centers of those who are there [u], shape (a, 2).
-        foods: centers of the foods that are there [u], shape (f, 2).
+        config: Settings of the world.
+        radius: Radius of the disc, and of all agents [u].
+        places: Centers to check [u], shape (n, 2).
+        agents: Centers of the agents present [u], shape (a, 2).
+        foods: Centers of the foods present [u], shape (f, 2).
     """
     free = is_within_walls(config, radius, places)
     for others, reach in ((agents, 2 * radius), (foods, radius + config.world.food_radius)):
@@ -56,7 +56,7 @@ def is_free(config: Config, radius: float, places: Floats, agents: Floats, foods
 
 
 def _scene_success(config: Config, species: str, sizes: Sequence[int], rng: np.random.Generator) -> list[float]:
-    """One scene that fills up: the share of successful births at each size."""
+    """Fills one scene, and returns the share of successful births at each size."""
     size = np.array([config.arena.width, config.arena.height])
     foods = rng.uniform(0, 1, (sum(food.initial_count for food in config.food.values()), 2)) * size
     own = config.species[species]
@@ -88,15 +88,15 @@ def _fill(
 
 
 def is_within_walls(config: Config, radius: float, places: Floats) -> NDArray[np.bool_]:
-    """Whether a disc lies within the outer polygon, which is convex, and clear of all inner walls.
+    """Whether a disc is within the outer polygon, which is convex, and clear of all inner walls.
 
     Args:
-        config: the settings.
-        radius: of the disc [u].
-        places: centers [u], shape (n, 2).
+        config: Settings of the world.
+        radius: Radius of the disc [u].
+        places: Centers to check [u], shape (n, 2).
 
     Returns:
-        (n,).
+        A flag per place, shape (n,).
     """
     inward, offset, segments = _walls(config.arena)
     gap = np.multiply.outer(places[:, 0], inward[0]) + np.multiply.outer(places[:, 1], inward[1]) - offset
@@ -109,10 +109,10 @@ def is_within_walls(config: Config, radius: float, places: Floats) -> NDArray[np
 
 @cache
 def _walls(arena: ArenaConfig) -> tuple[Floats, Floats, list[tuple[Floats, Floats]]]:
-    """The outer walls as half planes: normals (2, walls), offsets (walls,); the start and the span of inner walls."""
+    """Outer walls as half planes: normals (2, walls) and offsets (walls,); start and extent of each inner wall."""
     corners = np.array(outline(arena))
     along = np.roll(corners, -1, axis=0) - corners
     along /= np.linalg.norm(along, axis=1, keepdims=True)
-    inward = np.array([along[:, 1], -along[:, 0]])  # the inside lies to the right
+    inward = np.array([along[:, 1], -along[:, 0]])  # the inside is to the right
     ends = walls(arena)[len(corners) :].astype(np.float64)
     return inward, np.einsum("ni,in->n", corners, inward), [(each[:2], each[2:] - each[:2]) for each in ends]

@@ -1,4 +1,4 @@
-"""What to know of a setting before running, in sentences."""
+"""Warnings about a condition before it is run, in sentences."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -15,11 +15,11 @@ from hedon.demography.life import energy_hazard, expected_lifetime, reproduction
 from hedon.demography.schedule import birth_of, factor_at, factor_range, hazard_of, mean_factor, scaled_hazard
 
 LONG_LIFE = 100_000
-"""Mean life [step] beyond which births and deaths are too few for selection to act on."""
+"""Mean life [step] beyond which births and deaths are too few for selection."""
 
 
 def warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...]) -> tuple[str, ...]:
-    """What follows from the settings of a species, without samples."""
+    """Warnings that follow from the settings of a species, without samples."""
     own = config.species[species]
     starving, best = levels[0], max(levels, key=lambda level: level.r0)
     capacity, founders = own.population.capacity, own.population.initial_count
@@ -27,7 +27,7 @@ def warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...]) -> t
     found = [*_gene_warnings(own), *_rule_warnings(own)]
     if best.r0 < 1:
         found.append(f"It cannot live: R0 is {best.r0:.2f} at best, so every lineage dies out however well it eats.")
-    fed_by_others = any(store.birth_weight > 0 for store in own.store.values())  # whom this forecast takes to be full
+    fed_by_others = any(store.birth_weight > 0 for store in own.store.values())  # assumed full in this forecast
     if floor and starving.r0 >= 1 and math.isfinite(starving.lifetime) and not fed_by_others:
         found.append(
             f"It can live without eating: R0 is {starving.r0:.2f} at energy 0, so an agent that never eats replaces "
@@ -54,7 +54,7 @@ def warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...]) -> t
 
 
 def _scheduled(config: Config, species: str, energy: float) -> Iterator[str]:
-    """What follows time: at which factor the numbers are, and what they are at the others."""
+    """Warnings about schedules: the factor behind the numbers, and the numbers at other factors."""
     own = config.species[species]
     low, high = factor_range(own.hazard.schedule, "scale")
     if low < high:
@@ -88,12 +88,12 @@ def _scheduled(config: Config, species: str, energy: float) -> Iterator[str]:
 
 
 def _extreme(food: FoodConfig, which: int) -> float:
-    """The smallest (0) or the largest (1) factor of a kind's growth."""
+    """Smallest (0) or largest (1) factor of a kind's growth."""
     return factor_range(food.schedule, "growth_rate")[which]
 
 
 def _which(schedules: Mapping[str, ScheduleConfig], name: str) -> str:
-    """Which factor of a schedule the numbers are at."""
+    """Names the factor of a schedule behind the numbers."""
     mean = mean_factor(schedules, name)
     return f"the mean over a period, {mean:g}" if schedules[name].period else f"its end, {mean:g}, which stays"
 
@@ -103,7 +103,7 @@ def _steps(lifetime: float) -> str:
 
 
 def _others(config: Config, species: str) -> Iterator[str]:
-    """What a species has to do with agents that it eats, that eat it, and that eat and live beside it."""
+    """Relations of a species to agents that it eats, that eat it, or that share its food."""
     eaten = diet(config, config.species[species])
     prey = [each for each in config.species if each in eaten]
     if prey:
@@ -127,7 +127,7 @@ def _others(config: Config, species: str) -> Iterator[str]:
 
 
 def _beyond(config: Config, species: str) -> Iterator[str]:
-    """What enters births and deaths, but not this forecast."""
+    """What affects births and deaths but is missing from this forecast."""
     own = config.species[species]
     if config.obstacle.count and config.obstacle.damage:
         yield (
