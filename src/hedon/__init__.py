@@ -14,7 +14,7 @@ from lazy_loader import attach_stub
 
 from hedon.registration import register_presets
 
-# Imported on first use: `hedon --help` must not wait for the engine and the table library.
+# Imported on first use, because `hedon --help` must not wait for the engine and the table library.
 __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
 
 __version__ = version("hedon")

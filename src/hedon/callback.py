@@ -1,4 +1,4 @@
-"""Callbacks of runs: the numbers of each window as they come, in TensorBoard, and a progress bar for notebooks.
+"""Callbacks of runs: the numbers of each window for other tools or TensorBoard, and a progress bar for notebooks.
 
 A callback is a function of a `hedon.Moment`: `hedon.run(plan, callbacks=[print])`.
 """
@@ -13,13 +13,13 @@ from hedon.error import HedonError
 from hedon.experiment.plan import Moment
 
 NAMED = ("world", "seed", "step", "species")
-"""Columns of a row that say what it is of."""
+"""Columns that identify a row."""
 
 
 class Metrics:
-    """The numbers of each window once, when it has ended: what tools for experiments log.
+    """Gives the numbers of each window once, after it has ended, for logging by experiment trackers.
 
-    Use one object for one run, since it remembers what it has given.
+    Use a separate object for each run, since it remembers what it has given.
 
     Example:
         >>> import hedon, hedon.callback
@@ -35,7 +35,7 @@ class Metrics:
         self._last: dict[int, int] = {}
 
     def __call__(self, moment: Moment) -> list[tuple[int, dict[str, float]]]:
-        """What is new: steps with their values, by names such as "seed_1/alive" or "seed_1/prey.births"."""
+        """Returns new steps with their values, by names such as "seed_1/alive" or "seed_1/prey.births"."""
         found: dict[int, dict[str, float]] = {}
         for index, row in enumerate(moment.rows):
             step = int(row["step"])
@@ -53,10 +53,10 @@ def _values(row: Any) -> Iterator[tuple[str, float]]:
 
 
 class TensorBoard:
-    """Writes the numbers of each window as scalars: `tensorboard --logdir FOLDER` shows them while the run goes on.
+    """Writes the numbers of each window as scalars; `tensorboard --logdir FOLDER` shows them during the run.
 
     Args:
-        folder: For the event file.
+        folder: Folder for the event file.
 
     Raises:
         HedonError: tensorboardX is not installed.
@@ -73,7 +73,7 @@ class TensorBoard:
         self._metrics = Metrics()
 
     def __call__(self, moment: Moment) -> None:
-        """Writes what is new; at the end of the run all of it is on disk."""
+        """Writes new values; at the end of the run all of them are on disk."""
         for step, values in self._metrics(moment):
             for name, value in values.items():
                 self._writer.add_scalar(name, value, step)
@@ -81,10 +81,10 @@ class TensorBoard:
 
 
 class ProgressBar:
-    """A progress bar in a notebook: steps, speed, time left, and the numbers alive.
+    """A progress bar in a notebook: steps, speed, remaining time, and numbers alive.
 
     Raises:
-        HedonError: There is no IPython.
+        HedonError: IPython is not installed.
     """
 
     def __init__(self) -> None:
@@ -96,7 +96,7 @@ class ProgressBar:
         self._handle: Any = None
 
     def __call__(self, moment: Moment) -> None:
-        """Draws the bar anew."""
+        """Updates the bar."""
         done = moment.step - moment.first
         speed = done / max(moment.seconds, 1e-9)
         left = (moment.steps - moment.step) / speed if speed > 0 else math.inf

@@ -1,4 +1,4 @@
-"""What objects with worlds have in common when they are copied: the copy has worlds of its own, and goes on alike."""
+"""Base classes for copying objects with worlds: a copy gets its own worlds, and continues as the original would."""
 
 import copy
 from typing import Any, Self
@@ -7,21 +7,21 @@ from typing import Any, Self
 class Cloned:
     """Makes `copy.copy` and `copy.deepcopy` the same as `clone`, for objects that hold worlds themselves.
 
-    A copy makes anew what it was made with, `_own`, and takes over what a subclass or a user has added.
+    A copy recreates the attributes in `_own`, and takes over attributes that a subclass or a user has added.
     """
 
     _own: set[str]
 
     def clone(self) -> Self:
-        """A copy with worlds of its own, which goes on as this one does; `copy.copy` and `deepcopy` give the same."""
+        """Returns a copy with its own worlds, which continues as this one would, like `copy.copy` and `deepcopy`."""
         raise NotImplementedError
 
     def _keep_own(self, *later: str) -> None:
-        """Marks the attributes that there are now as made anew by copies, and those that come later."""
+        """Marks the current attributes, and those that come later, as recreated by copies."""
         self._own = {*vars(self), "_own", *later}
 
     def _added(self) -> dict[str, Any]:
-        """Attributes of a subclass, or of a user."""
+        """Attributes added by a subclass or a user."""
         return {name: value for name, value in vars(self).items() if name not in self._own}
 
     def __copy__(self) -> Self:
@@ -35,7 +35,7 @@ class Copied:
     """Makes `clone` and `copy.copy` the same as `copy.deepcopy`, for objects around those that hold worlds."""
 
     def clone(self) -> Self:
-        """A copy with worlds and arrays of its own, which goes on as this one does; it is not recorded."""
+        """Returns a copy with its own worlds and arrays, which continues as this one would; it is not recorded."""
         return copy.deepcopy(self)
 
     def __copy__(self) -> Self:

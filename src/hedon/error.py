@@ -1,4 +1,4 @@
-"""The base class of all errors that hedon raises about a user's input, and the errors that several parts share."""
+"""The base class of hedon's errors about a user's input, and errors shared by several parts."""
 
 
 class HedonError(Exception):
@@ -6,8 +6,8 @@ class HedonError(Exception):
 
 
 class ArgumentError(HedonError):
-    """An argument from Python that cannot be used: the message names it, its value and what is allowed."""
+    """An invalid argument from Python; the message gives the argument, its value and what is allowed."""
 
 
 class EngineError(HedonError):
-    """An error of the engine: a world that cannot continue, or a simulation that cannot be made or used."""
+    """An error of the engine: a world cannot continue, or a simulation cannot be created or used."""

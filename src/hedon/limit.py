@@ -1,10 +1,10 @@
-"""Limits that a system sets to a process."""
+"""Limits that the system sets for a process."""
 
 import sys
 
 
 def address_limit() -> int | None:
-    """Most memory that this process may reserve, as `ulimit -v` says [byte]; None without a limit, as on Windows."""
+    """Memory that this process may reserve, by `ulimit -v` [byte]; None without a limit, as on Windows."""
     if sys.platform == "win32":
         return None
     import resource

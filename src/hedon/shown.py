@@ -1,15 +1,15 @@
-"""How objects show themselves: in one line, and in a notebook as a small table."""
+"""Representations of objects: one line, or a small table in a notebook."""
 
 from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
 MOST_ROWS = 12
-"""Most rows of a table in a notebook."""
+"""Maximum number of rows of a table in a notebook."""
 
 
 def table_html(title: str, headers: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """A small table with a title; of many rows the first ones, and how many more there are."""
+    """A small table with a title; of many rows, it shows the first and the number of the rest."""
     every = list(rows)
     head = "".join(f"<th>{escape(each)}</th>" for each in headers)
     body = "".join(

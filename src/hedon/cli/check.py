@@ -62,9 +62,7 @@ def _compare(run: Path, other: Path) -> bool:
 
 
 def _replay_fault(run: Path, threads: int) -> bool:
-    """Repeats the steps before a fault. Returns whether it recurs; if not, the machine or a source change is the
-    cause.
-    """
+    """Repeats the steps before a fault. Returns whether it recurs; if not, the machine or a new source is the cause."""
     from hedon.experiment.fault import replay_fault
 
     found = replay_fault(run, threads)

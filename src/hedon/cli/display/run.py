@@ -29,9 +29,7 @@ def duration(seconds: float) -> str:
 
 
 class _Speed:
-    """Steps per second over the last seconds, and at least one window, as learning at its end takes most of the
-    time.
-    """
+    """Steps per second over the last seconds, and at least one window, because learning at its end takes most time."""
 
     SPAN = 10.0  # [s]
 
