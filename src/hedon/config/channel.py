@@ -186,7 +186,7 @@ def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
 
 
 def season_place(config: Settings, species: SpeciesConfig) -> str:
-    """Finds the setting that gives the length of a year: the species' own, or that of the first repeating schedule.
+    """Finds the setting for the length of a year: the species' own, or else the period of the first repeating schedule.
 
     Returns:
         A path in the config if it begins with "food." or "obstacle.", else a path in the species; "" without a year.

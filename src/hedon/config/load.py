@@ -260,7 +260,7 @@ def _schema_problems(tables: Table, complete: bool) -> Iterator[Problem]:
 
 
 def _require_complete(config: Config, tables: Table, origin: str) -> None:
-    """Raises ConfigError if a file marked as complete lacks a setting, as its default would be nobody's choice."""
+    """Raises ConfigError if a file marked as complete lacks a setting, since its default would not be a choice."""
     problems = [
         Problem(path, f"is missing in a file that says it is complete; {setting.allowed}")
         for path, setting, _ in leaves(config)

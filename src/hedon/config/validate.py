@@ -185,7 +185,7 @@ def _converted(kind: Any, value: Any) -> Any:
 
 
 def _named_below(section: type, table: Mapping[str, Any], name: str) -> str | None:
-    """If a name is that of an existing species, kind of food or the like, its path in the section."""
+    """Path, in the section, of a species, food kind or the like with this name; None if there is none."""
     repeated = (part for part, inner in sections(section).items() if inner.repeated)
     below = {part: table[part] for part in repeated if isinstance(table.get(part), Mapping)}
     return " or ".join(f"{part}.{name}" for part, each in below.items() if name in each) or None

@@ -63,7 +63,7 @@ def throw(
 
     Args:
         draw: Function that draws n places, (n, 2).
-        free: Function that tells which places are otherwise free, (n,).
+        free: Function that flags the places that are otherwise free, (n,).
         reach: Minimum distance between two of the things [u].
         count: Number of things.
         tries: Number of places tried for each; if none is free, the rest is given up.

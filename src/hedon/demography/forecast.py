@@ -90,7 +90,7 @@ def forecast(config: Config, species: str | None = None) -> Forecast:
 
 
 def setting_warnings(config: Config, species: str | None = None) -> tuple[str, ...]:
-    """Warnings to read before running a condition: those of its forecast that need no samples.
+    """Warnings to read before running a condition: the part of its forecast's warnings that needs no samples.
 
     Raises:
         ArgumentError: There is no such species.

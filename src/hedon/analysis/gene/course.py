@@ -1,4 +1,4 @@
-"""Courses of a world's mean weights, with those of neutral genes on the same pedigree."""
+"""Courses of a world's mean weights and of neutral genes on the same pedigree."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

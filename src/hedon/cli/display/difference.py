@@ -13,7 +13,7 @@ SHOWN = 6
 
 
 def show_difference(a: Path, b: Path) -> bool:
-    """Compares two runs, with worlds matched by seed, as far as both have records.
+    """Compares two runs, with worlds of the same seed matched, as far as both have records.
 
     Returns:
         Whether settings and records agree; versions and machines are listed but not compared.
