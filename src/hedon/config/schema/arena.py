@@ -62,8 +62,8 @@ def walls(arena: ArenaConfig) -> "NDArray[np.float32]":
     """All walls: the outer polygon clockwise from the left wall, then the inner walls in their order.
 
     Returns:
-        (count, 4) float32: ax, ay, bx, by of each segment [u]. The inside of the outer polygon is to the right of a →
-        b.
+        (count, 4) float32: ax, ay, bx, by of each segment [u]. Seen from a toward b, the inside of the outer polygon is
+        on the right.
     """
     import numpy as np
 

@@ -58,14 +58,17 @@ class GenomeConfig:
 
     Founders' weights are drawn as given by `[food.<kind>.gene]` for a kind of food, `[genome.action]` for action,
     `[genome.prey]` for each species that is eaten, and `[genome.second]` for the second gene of each weight, if the
-    reward family has one; neutral genes as given by `[genome.neutral]`. `[genome.learning.NAME]` adds a gene for
-    learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the learning rate, the odds of the discount
-    gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's actions, by 10^g. `[genome.family.NAME]`
-    does the same for threshold or threshold_width of the reward family. `[genome.set.PATH]`, such as
-    `[genome.set.sensor.ray_length]`, does so for a number of the body, the senses, the motors, the stores, the hazard
-    or births, within the limits of its setting; the gene is named g_PATH, with `_` for each dot. `[genome.extra.NAME]`
-    adds a gene extra_NAME that only rules in Python read (guide/rule.md). `[genome.mutation.GENE]` gives one gene its
-    own mutation.
+    reward family has one; neutral genes as given by `[genome.neutral]`.
+
+    `[genome.learning.NAME]` adds a gene for learning_rate, gamma, entropy_coef or action_sd: the gene g multiplies the
+    learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
+    actions, by 10^g. `[genome.family.NAME]` does the same for threshold or threshold_width of the reward family.
+    `[genome.set.PATH]`, such as `[genome.set.sensor.ray_length]`, does so for a number of the body, the senses, the
+    motors, the stores, the hazard or births, within the limits of its setting; the gene is named g_PATH, with `_` for
+    each dot.
+
+    `[genome.extra.NAME]` adds a gene extra_NAME that only rules in Python read (guide/rule.md).
+    `[genome.mutation.GENE]` gives one gene its own mutation.
     """
 
     neutral_count: int = setting(
