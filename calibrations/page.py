@@ -12,17 +12,17 @@ HEADER = ("number", "design", "kind", "nominal", "observed", "error", "answered"
 
 INTRODUCTION = """# How often hedon's numbers are wrong
 
-hedon prints p values, confidence intervals and verdicts. This page lists how often each of them is wrong, observed in
-simulations: data with no effect, or with a known one, go through the functions that print the number.
+hedon prints p values, confidence intervals and verdicts. This page lists how often each of them is wrong. We measured
+this by simulation: we passed data with no effect, or with a known effect, to the function that prints each number.
 
-`python -m calibrations --write` regenerates this page. Every test run repeats a share of the simulations, and fails if
-a number leaves its level.
+Every test run repeats some of the simulations and fails if a number leaves its level. To regenerate this page, run
+`python -m calibrations --write`.
 
-- **False alarms**: how often a test rejects although nothing is there. **Missed**: how often an interval leaves out
-  the true value. Both should be near or below the nominal rate.
-- **Found**: how often a known effect is found, at least the nominal rate. **Bias**: the mean error, as a share of the
-  true value or scale.
-- **Answered**: the share of simulated data sets for which the number is given. If worlds are too few, it is withheld.
+- **False alarms**: how often a test rejects when there is no effect. **Missed**: how often an interval leaves out the
+  true value. Both should be close to the nominal rate, or below it.
+- **Found**: how often a known effect is detected, which should be at least the nominal rate. **Bias**: the mean error,
+  as a share of the true value or scale.
+- **Answered**: the share of simulated data sets for which the number is given. With too few worlds, it is withheld.
 """
 
 

@@ -164,7 +164,7 @@ CALIBRATIONS = [
         for i, name in enumerate(("direction", "distance", "held"))
     ),
     Calibration(
-        "drift, p of marker",
+        "drift, p of neutral genes",
         ("topic:drift",),
         "3 to 20 worlds; 1 to 16 neutral genes of the same law, with Cauchy tails",
         "false alarms",

@@ -90,7 +90,7 @@ _ORDERS: tuple[tuple[Comparison, bool], ...] = (
 )
 CALIBRATIONS = [
     Calibration(
-        f"verdict on a {name}",
+        "verdict on modes" if name == "modes" else f"verdict on a {name}",
         ("topic:verdict", f"verdict:{name}"),
         _BORDER.format(data),
         "false alarms",
