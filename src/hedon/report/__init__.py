@@ -1,4 +1,4 @@
-"""Pages, tables and files about runs: of a report, and of studies."""
+"""Pages, tables and files about runs, for reports and studies."""
 
 from lazy_loader import attach_stub
 

@@ -1,4 +1,4 @@
-"""Answers all topics about some runs, and writes the answers: `analysis.json` and one CSV file per table."""
+"""Computes all topics for some runs and writes the results: `analysis.json` and one CSV file per table."""
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,20 +21,20 @@ from hedon.report.words import answers
 from hedon.text import brief
 
 ANALYSIS = "analysis"
-"""Folder of the answers within the folder of a single run."""
+"""Folder of the results within the folder of a single run."""
 _JSON = "analysis.json"
 
 
 @dataclass(frozen=True)
 class Analysis:
-    """The answers about some runs.
+    """The analysis of some runs.
 
     Attributes:
-        runs: as they were read.
-        conditions: their worlds, by condition.
-        tables: by name, in the order of the topics.
-        answers: by condition, in words; empty without the topic drift.
-        unfinished: a sentence for each run that has not finished: of which steps its numbers are.
+        runs: The runs, as they were read.
+        conditions: Their worlds, by condition.
+        tables: The tables by name, in the order of the topics.
+        answers: Conclusions in words, by condition; empty without the topic drift.
+        unfinished: For each unfinished run, a sentence on which steps its numbers cover.
     """
 
     runs: tuple[Run, ...]
@@ -45,17 +45,17 @@ class Analysis:
 
 
 def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Tell = tell_nobody) -> Analysis:
-    """Answers some topics about all runs together; runs of equal configs count as one condition.
+    """Computes some topics for all runs together; runs with equal configs form one condition.
 
     Args:
-        runs: Of one condition or several.
-        topics: Keys of `TOPICS`, in the order of their tables.
-        tell: Is told of each step.
+        runs: Runs of one or more conditions.
+        topics: Keys of `TOPICS`, in the order in which their tables are wanted.
+        tell: Progress callback, called before each step.
 
     Raises:
-        RecordError, ConfigError: a run cannot be read.
-        TopicError: there is no such topic.
-        ArgumentError: these are no runs, as `open_run` gives them.
+        RecordError, ConfigError: A run cannot be read.
+        TopicError: A topic is unknown.
+        ArgumentError: `runs` contains something other than the runs that `open_run` returns.
     """
     require_topics(topics)
     if not isinstance(runs, Iterable) or not all(isinstance(run, Run) for run in runs):
@@ -70,17 +70,17 @@ def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Te
 
 
 def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
-    """Writes `analysis.json` and one CSV file per table into a folder, over those that are there.
+    """Writes `analysis.json` and one CSV file per table to a folder, replacing those of an earlier analysis.
 
-    Tables of an earlier analysis in this folder that this one lacks are removed: they may be of other records.
+    Tables of an earlier analysis that this one lacks are removed, since they may come from other records.
 
     Returns:
-        The files.
+        The paths of the files written.
 
     Raises:
-        RecordError: the folder cannot be written.
+        RecordError: The folder cannot be written.
     """
-    # Not indented, which takes ten times as long: this holds every number.
+    # Not indented: the file contains every number, and indenting takes ten times as long.
     text = json.dumps(_analysis_json(analysis), ensure_ascii=False, allow_nan=False) + "\n"
     contents = {_JSON: text.encode()}
     for name, table in analysis.tables.items():
@@ -94,7 +94,7 @@ def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:
 
 
 def _analysis_json(analysis: Analysis) -> dict[str, Any]:
-    """The content of `analysis.json`: runs with their manifests, worlds, answers, and every table with its rows."""
+    """The content of `analysis.json`: runs with their manifests, worlds, conclusions, and tables with their rows."""
     worlds = [
         {
             "condition": world.condition,

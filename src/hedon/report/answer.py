@@ -1,4 +1,4 @@
-"""What was found, ready to be written: one page as HTML and Markdown, a JSON file, tables and figures beside it."""
+"""Results ready to be written: one page as HTML and Markdown, a JSON file, and separate tables and figures."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -23,14 +23,14 @@ sentences about worlds that are not independent."""
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What was found about some worlds, as it is printed and written.
+    """Results about some worlds, as they are printed and written.
 
     Attributes:
-        name: The stem of its files.
-        page: What a reader sees.
-        content: What the JSON file contains besides the tables; None if there is no such file.
-        tables: For the JSON file and the terminal.
-        files: Further files, by their paths.
+        name: Stem of the names of its files.
+        page: The page that is written as HTML and Markdown.
+        content: Contents of the JSON file besides the tables; None to write no JSON file.
+        tables: Tables for the JSON file and the terminal.
+        files: Contents of further files, by path.
     """
 
     name: str
@@ -49,26 +49,26 @@ def simple_answer(
     figures: Sequence[NamedFigure],
     files: Mapping[str, str] | None = None,
 ) -> Answer:
-    """The answer to one question: figures, then a section for each table that is shown."""
+    """The answer to one question: its figures, then a section for each visible table."""
     drawn = [drawn_file(figure) for figure in figures]
     page = Page(title, lead, [PageSection("", drawn), *(table_section(each) for each in tables if each.shown)])
     return Answer(name, page, content, tables, files or {})
 
 
 def table_section(table: ResultTable) -> PageSection:
-    """A section that holds a table."""
+    """A section that contains one table."""
     return PageSection(table.title, [table], table.name)
 
 
 def drawn_file(named: NamedFigure, path: str = "", form: str = "svg") -> FigureFile:
-    """A figure as an SVG file of its name, or of another path, and beside it in another format."""
+    """A figure as an SVG file, at `path` or named after the figure, and also in the format `form`."""
     path, svg = path or f"{named.name}.svg", svg_bytes(named.figure)
     others = {} if form == "svg" else {f"{path.removesuffix('svg')}{form}": FORMATS[form](named.figure)}
     return FigureFile(named.question, path, svg, named.caption, others)
 
 
 def write_answer(folder: Path, answer: Answer) -> list[Path]:
-    """Writes the files of an answer, replacing an earlier one, and returns their paths, figures last.
+    """Writes the files of an answer, replacing those of an earlier one, and returns their paths, figures last.
 
     Raises:
         RecordError: A file cannot be written.
@@ -78,7 +78,7 @@ def write_answer(folder: Path, answer: Answer) -> list[Path]:
 
 
 def replace_files(folder: Path, answer: Answer) -> list[Path]:
-    """As `write_answer`, in a folder into which no other process writes."""
+    """Does the work of `write_answer`; no other process may be writing to the folder."""
     name, page = answer.name, answer.page
     blocks = [block for section in page.sections for block in section.blocks]
     drawn = [block for block in blocks if isinstance(block, FigureFile)]

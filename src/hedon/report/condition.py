@@ -1,4 +1,4 @@
-"""All figures of one condition, by name and in the order in which a report shows them."""
+"""All figures of one condition, in the order of a report."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -23,7 +23,7 @@ from hedon.report import figure
 
 
 def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable]) -> Iterator[NamedFigure]:
-    """Draws them one after the other."""
+    """Draws the figures of a condition, one at a time."""
     first = worlds[0]
     mine = {name: _of_condition(table.rows, first.condition) for name, table in tables.items()}
     colors = meal_colors(first.config, first.prey)

@@ -1,6 +1,6 @@
-"""Makes `docs/records.md` from the schema: `python -m hedon.report.document > docs/records.md`.
+"""Generates `docs/records.md` from the schema: `python -m hedon.report.document > docs/records.md`.
 
-Also the table of `docs/figures.md`, which a test compares.
+Also generates the table of figures in `docs/figures.md`; a test compares the two.
 """
 
 import sys
@@ -66,7 +66,7 @@ _MECHANISMS = {
     "obstacles": Columns(("normal",), 1, obstacles=True),
     "other stores than energy, here `water`": Columns(("normal",), 1, stores=("water",), levels=True),
 }
-"""What gives the tables more columns, each with the columns that a run then has."""
+"""Mechanisms that add columns to the tables, each with the columns of a run that has it."""
 
 _LEDGER = """\
 The ledger closes in each interval, but for rounding:
@@ -139,7 +139,7 @@ def _table_section(table: Table) -> str:
 
 
 def _further_columns(table: Table) -> str:
-    """The columns of a table that only worlds with further mechanisms have."""
+    """The columns of a table that exist only in worlds with further mechanisms."""
     known = {column.name for column in table.columns}
     rows = ["| only with | column | type | unit | meaning |", "|---|---|---|---|---|"]
     for mechanism, columns in _MECHANISMS.items():
@@ -157,13 +157,13 @@ def _key_table(keys: Mapping[str, str]) -> str:
 
 
 def _new_keys(keys: Mapping[str, str], others: Mapping[str, str]) -> str:
-    """A table of the keys that others do not have, or that mean something else there."""
+    """A table of the keys that are missing from `others` or have another meaning there."""
     return _key_table({key: meaning for key, meaning in keys.items() if others.get(key) != meaning})
 
 
 def _attributes(kind: type) -> str:
-    """The attributes of a dataclass, as its docstring describes them."""
-    section = cleandoc(kind.__doc__ or "").split("Attributes:\n")[1]  # as Python 3.13 keeps it
+    """A table of the attributes of a dataclass, taken from its docstring."""
+    section = cleandoc(kind.__doc__ or "").split("Attributes:\n")[1]  # the indentation that Python 3.13 keeps
     entries: list[str] = []
     for line in section.rstrip().splitlines():
         if line.startswith(" " * 8):

@@ -1,4 +1,4 @@
-"""Files of an earlier answer or analysis, which a new one in the same folder replaces."""
+"""Finds files of an earlier answer or analysis, which a new one in the same folder replaces."""
 
 import json
 import re
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def earlier_names(summary: Path, key: str) -> set[str]:
-    """The names that a summary lists under a key; none if the file is missing or was not written by hedon."""
+    """The names listed under a key of a summary; none if the file is missing or was not written by hedon."""
     try:
         content = json.loads(summary.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):

@@ -1,4 +1,4 @@
-"""The figures of a report: what each asks, and how it is read."""
+"""The figures of a report: the question that each answers, and how to read it."""
 
 from hedon.figure.named import FigureKind
 
@@ -60,4 +60,4 @@ DEMOGRAPHY = FigureKind(
     "shaded: if the curves are steep there, a little energy matters much. Below R0 = 1 a lineage dies out.",
 )
 FIGURES = (HISTORY, WORLD, WEIGHTS, POPULATION, REGIME, SURVIVAL, SELECTION, LINEAGE, DEMOGRAPHY)
-"""In the order in which a report shows them."""
+"""All figures, in the order of a report."""

@@ -1,13 +1,13 @@
-"""Text within Markdown: escaped, so that names of folders, settings and foods mean nothing there but themselves."""
+"""Escapes text for Markdown, so that names of folders, settings and foods are shown literally."""
 
 import re
 from collections.abc import Sequence
 
-_SPECIAL = re.compile(r"[\\`*\[\]<>&|#~$]|(?<!\w)_|_(?!\w)")  # an underscore within a word marks nothing
+_SPECIAL = re.compile(r"[\\`*\[\]<>&|#~$]|(?<!\w)_|_(?!\w)")  # an underscore within a word has no meaning in Markdown
 
 
 def escape_markdown(text: str) -> str:
-    """A text as Markdown that shows it, on one line."""
+    """Markdown that shows a text literally, on one line."""
     return _SPECIAL.sub(r"\\\g<0>", re.sub(r"\s*\n\s*", " ", text))
 
 

@@ -1,4 +1,4 @@
-"""What a report says first of a run that has not finished: of which steps its numbers are."""
+"""The notice at the top of the report of an unfinished run: which steps its numbers cover."""
 
 from collections.abc import Iterable, Sequence
 
@@ -9,7 +9,7 @@ from hedon.record.reader import Run
 def unfinished(runs: Iterable[Run], conditions: Conditions) -> list[str]:
     """A sentence for each run that has not finished.
 
-    Rows of intervals and of single agents are written at different times, so both tables of such a run may be of
+    Rows of intervals and rows of agents are written at different times, so the two tables of such a run may cover
     different steps.
     """
     worlds = [world for group in conditions.values() for world in group]

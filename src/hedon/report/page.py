@@ -27,11 +27,11 @@ class FigureFile:
     """A figure of a page.
 
     Attributes:
-        question: that it answers, its heading.
-        path: of its SVG file, relative to the page.
-        svg: the content of the file.
-        caption: how to read it; may be empty.
-        others: files of the figure in other formats, by their paths.
+        question: The question that it answers, used as its heading.
+        path: Path of its SVG file, relative to the page.
+        svg: Content of the SVG file.
+        caption: How to read the figure; may be empty.
+        others: Contents of the figure's files in other formats, by path.
     """
 
     question: str
@@ -48,10 +48,10 @@ class FigureFile:
 
 @dataclass(frozen=True)
 class Folded:
-    """A table that HTML shows on request.
+    """A table that the HTML page shows on request.
 
     Attributes:
-        table: itself.
+        table: The table.
     """
 
     table: ResultTable
@@ -66,10 +66,10 @@ class PageSection:
     """A part of a page.
 
     Attributes:
-        title: its heading; empty for none.
-        blocks: in order.
-        anchor: by which the page's contents lead here; empty if they do not.
-        link: what they call it; its heading if empty.
+        title: Heading; empty for none.
+        blocks: Its content, in order.
+        anchor: Target of the link from the page's table of contents; empty to leave the section out of it.
+        link: Text of that link; the heading if empty.
     """
 
     title: str
@@ -80,15 +80,15 @@ class PageSection:
 
 @dataclass(frozen=True)
 class Page:
-    """What a reader sees.
+    """The content of a page, independent of its format.
 
     Attributes:
-        title: its heading.
-        lead: first lines, in Markdown.
-        sections: in order.
-        cautions: sentences that come before all numbers, in Markdown.
-        conditions: worlds whose settings are shown at the end.
-        runs: whose manifests are shown at the end.
+        title: Heading of the page.
+        lead: Opening lines, in Markdown.
+        sections: Sections, in order.
+        cautions: Sentences placed before all numbers, in Markdown.
+        conditions: Worlds whose settings are listed at the end, by condition.
+        runs: Runs whose manifests are summarized at the end.
     """
 
     title: str
@@ -100,21 +100,21 @@ class Page:
 
 
 class _Markdown(str):
-    """Text that is Markdown already: it is not escaped again."""
+    """Text that is already Markdown, so it is not escaped again."""
 
 
 def html_page(page: Page) -> str:
-    """A page as HTML that needs no other file."""
+    """A page as self-contained HTML."""
     return _render("page.html.j2", page)
 
 
 def markdown_page(page: Page) -> str:
-    """A page as Markdown, with its figures as files beside it."""
+    """A page as Markdown that links to its figures as separate files."""
     return _render("page.md.j2", page)
 
 
 def _render(template: str, page: Page) -> str:
-    """A page from a template; what it prints is escaped unless marked as `verbatim` or `prose`."""
+    """Fills a template with a page; values are escaped unless marked as `verbatim` or `prose`."""
     is_html = template.endswith(".html.j2")
     environment = Environment(
         loader=PackageLoader("hedon.report", "template"),
@@ -154,7 +154,7 @@ def _markdown(value: Any) -> str:
 
 
 def _block(block: Block) -> tuple[str, Any]:
-    """The kind of a block, and what a template needs of it."""
+    """The kind of a block and the value that the template renders."""
     if isinstance(block, str):
         return "text", block
     if isinstance(block, tuple):
@@ -177,7 +177,7 @@ def _table(table: ResultTable) -> Mapping[str, Any]:
 
 
 def describe_worlds(worlds: Sequence[WorldRecord]) -> str:
-    """How many worlds of one setting there are, how long they are, and which died out, as a paragraph."""
+    """A paragraph on the worlds of one condition: how many there are, how long they are, and which died out."""
     seeds = ", ".join(str(world.seed) for world in worlds)
     extinct = [
         f"seed {world.seed} at step {world.extinct_step:,}" for world in worlds if world.extinct_step is not None

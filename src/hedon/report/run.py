@@ -1,7 +1,7 @@
-"""Makes the report of some runs from their folders alone, as often as one likes.
+"""Writes the report of some runs from their folders alone; it can be repeated at any time.
 
-Each run gets its `summary.json`. All runs together get figures, `analysis.json` with a CSV file per table, and the
-same on one page: `report.html`, which holds its figures and needs nothing else, and `report.md`.
+Each run gets its own `summary.json`. All runs together get figures, `analysis.json` with a CSV file per table, and one
+page with both: `report.html`, which is self-contained, and `report.md`.
 """
 
 import json
@@ -49,25 +49,25 @@ SETTING = "What the setting itself says, before any run:"
 def write_report(
     *runs: Run, folder: Path | str | None = None, figures: str = "svg", tell: Tell = tell_nobody
 ) -> list[Path]:
-    """Writes the report of some runs, over those that are there.
+    """Writes the report of some runs, replacing an earlier report in the same folder.
 
-    Where another report is being written into the same folder, this one waits for it. Damaged parts are left out; the
-    summary names them. The picture of a world needs `final.npz`.
+    If another process is writing a report to the same folder, this one waits. Damaged parts are left out and listed in
+    the summary. The picture of a world requires `final.npz`.
 
     Args:
-        runs: one or more.
-        folder: for all but the summaries; by default that of the run, or `report` for several.
-        figures: their format: "svg", which the page contains in any case, or "pdf" or "png" as well; "none" for no
-            figures, which take most of the time.
-        tell: is told of each step.
+        runs: One run or more.
+        folder: Where to write everything but the summaries; by default the folder of the run, or `report` for several.
+        figures: Format of the figures: "svg", which the page always contains, or "pdf" or "png" in addition; "none" for
+            no figures, which take most of the time.
+        tell: Progress callback, called before each step.
 
     Returns:
-        The files written: a `summary.json` per run, `report.html`, `report.md`, `analysis.json` (beside its CSV
-        files), `figures/*.svg`.
+        The paths of the files written: a `summary.json` per run, `report.html`, `report.md`, `analysis.json` (with its
+        CSV files), `figures/*.svg`.
 
     Raises:
-        ArgumentError: there is no such format.
-        RecordError: a folder cannot be written, or a `final.npz` is damaged; all other files are there then.
+        ArgumentError: The format is unknown.
+        RecordError: A folder cannot be written, or a `final.npz` is damaged; in the latter case all other files exist.
     """
     if figures not in (known := (*FORMATS, NO_FIGURES)):
         raise ArgumentError(f"figures = {brief(repr(figures))}: must be one of {', '.join(known)}")
@@ -93,8 +93,8 @@ def report_page(analysis: Analysis, figures: Mapping[str, Sequence[FigureFile]])
     """The report of some runs.
 
     Args:
-        analysis: its numbers.
-        figures: of each condition, the first of which shows what evolved.
+        analysis: The results to show.
+        figures: The figures of each condition; the first shows what evolved.
     """
     shown = {name: table for name, table in analysis.tables.items() if table.shown}
     verdict = [shown.pop("verdict")] if "verdict" in shown else []
@@ -122,7 +122,7 @@ def report_page(analysis: Analysis, figures: Mapping[str, Sequence[FigureFile]])
 
 
 def narrow_intervals(conditions: Conditions) -> list[str]:
-    """A sentence for each condition of which some worlds died out: so far from normal values, t is too narrow."""
+    """A caution for each condition in which some worlds died out, where t intervals are too narrow."""
     told = []
     for name, worlds in conditions.items():
         gone = sum(world.extinct_step is not None for world in worlds)
@@ -135,12 +135,12 @@ def narrow_intervals(conditions: Conditions) -> list[str]:
 
 
 def _lines(sentences: Iterable[str]) -> tuple[str, ...]:
-    """Sentences as Markdown that shows them."""
+    """Sentences, escaped for Markdown."""
     return tuple(map(escape_markdown, sentences))
 
 
 def run_summary(run: Run) -> dict[str, Any]:
-    """The content of `summary.json`: the numbers of a run, and what the sources of studies report of its preset."""
+    """The content of `summary.json`: the numbers of a run, and those published for its preset in a study's source."""
     manifest = run.manifest
     reported = reported_figures(manifest.preset) if manifest.modified is False else {}
     return summarize(run) | {"reported": plain(reported)}
@@ -153,7 +153,7 @@ def _write_summary(run: Run) -> Path:
 
 
 def _figures(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str, NamedFigure]]:
-    """Every figure with the condition that it belongs to: what evolved, what its worlds look like, and the rest."""
+    """Every figure with its condition: first what evolved, then what the worlds look like, then the rest."""
     several = len(analysis.conditions) > 1
     snapshots = list(_snapshots(analysis, faults))
     for condition, records in analysis.conditions.items():
@@ -166,7 +166,7 @@ def _figures(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[st
 
 
 def _snapshots(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str, Run, Snapshot]]:
-    """The last state of a world of each run, with the run's condition; damaged ones are noted and left out."""
+    """The last state of one world of each run, with the run's condition; damaged states are noted and left out."""
     for run in analysis.runs:
         condition = _condition_of(run, analysis)
         try:
@@ -185,18 +185,18 @@ def _world(run: Run, snapshot: Snapshot) -> NamedFigure:
 
 
 def _condition_of(run: Run, analysis: Analysis) -> str | None:
-    """The condition that a run's worlds belong to; None where all of them are kept from another run."""
+    """The condition that a run's worlds belong to; None if all of them are taken from another run."""
     found = (c for c, worlds in analysis.conditions.items() for world in worlds if world.run == run.path.name)
     return next(found, None)
 
 
 def _with_prefix(prefix: str, named: NamedFigure, *, several: bool) -> NamedFigure:
-    """A name of its own where the report has such a figure more than once."""
+    """Makes the name unique if the report has several figures of this kind."""
     slug = re.sub(r"[^a-z0-9]+", "-", prefix.lower()).strip("-")
     return replace(named, name=f"{slug}-{named.name}") if several else named
 
 
 def _as_file(named: NamedFigure, taken: Container[str], form: str) -> FigureFile:
-    """A figure as a file of its name, with a number where another has it: prefixes may differ in signs alone."""
+    """A figure as a file; a number is added if its name is taken, since prefixes may differ only in punctuation."""
     names = (f"{FIGURES}/{named.name}{end}.svg" for end in chain([""], (f"-{i}" for i in count(2))))
     return drawn_file(named, next(name for name in names if name not in taken), form)

@@ -1,4 +1,4 @@
-"""Makes what was asked of some studies, and writes it: figures, tables, and one page that holds all of it."""
+"""Builds the requested items of studies and writes them as figures, tables and one page that contains them all."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -24,20 +24,20 @@ from hedon.text import count
 NAME = "study"
 """The stem of the page and of the JSON file."""
 TABLES = "tables"
-"""Folder of the tables beside the page."""
+"""Folder of the tables, next to the page."""
 NOTHING = "Nothing to show yet: no world is there."
 CONDITION = "condition"
-"""The column of a condition's label in the table of worlds."""
+"""Column of the table of worlds that contains a condition's label."""
 
 
 def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) -> Path:
-    """Makes every item of some studies and writes it into a folder, over what is there.
+    """Builds every item of some studies and writes it to a folder, replacing existing files.
 
     Returns:
-        The page in HTML.
+        The path of the HTML page.
 
     Raises:
-        RecordError: the folder cannot be written.
+        RecordError: The folder cannot be written.
     """
     inputs = {item.name: gathered.inputs(item) for study in studies for item in study.items}
     made = {item.name: _make(item, inputs[item.name], gathered) for study in studies for item in study.items}
@@ -63,12 +63,12 @@ def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) ->
 
 @dataclass(frozen=True)
 class BuiltItem:
-    """An item as it was made.
+    """An item of a study with its results.
 
     Attributes:
-        item: what it is.
-        worlds: that it was made of: a row for each condition.
-        parts: its figures and tables, in order.
+        item: The item.
+        worlds: The worlds that it was built from, one row per condition.
+        parts: Its figures and tables, in order.
     """
 
     item: Item
@@ -111,7 +111,7 @@ def _make(item: Item, inputs: ItemInputs, gathered: Gathered) -> BuiltItem:
 
 
 def _worlds_table(item: Item, inputs: ItemInputs, gathered: Gathered) -> ResultTable | None:
-    """What an item was made of, beside what was wanted; None for one that needs no world, or only its picture."""
+    """The worlds available for an item and those requested; None if it needs no world, or only a picture of one."""
     if not item.conditions or item.pictures:
         return None
     scale = gathered.request.scale(item)
@@ -135,9 +135,9 @@ def _worlds_row(label: str, worlds: Sequence[WorldRecord], asked: int) -> Mappin
 
 
 def _every_world(inputs: Mapping[str, ItemInputs]) -> ResultTable:
-    """Every world of every condition once, for `hedon compare` and `hedon power`.
+    """Every world of every condition, once, for `hedon compare` and `hedon power`.
 
-    A label that means one thing in one item and another thing in another item is preceded by the item's name.
+    A label that stands for different worlds in different items is prefixed with the item's name.
     """
     found: dict[str, list[WorldRecord]] = {}
     for item, own in inputs.items():
@@ -153,7 +153,7 @@ def _every_world(inputs: Mapping[str, ItemInputs]) -> ResultTable:
 
 
 def _alike(worlds: Sequence[WorldRecord], others: Sequence[WorldRecord]) -> bool:
-    """Whether two items mean the same worlds, cut at the same step."""
+    """Whether two items use the same worlds, cut at the same step."""
     return [(w.condition, w.seed, w.end_step) for w in worlds] == [(w.condition, w.seed, w.end_step) for w in others]
 
 

@@ -1,4 +1,4 @@
-"""The cells of a table: the same on a terminal, in Markdown and in HTML."""
+"""Formats the cells of a table in the same way for the terminal, Markdown and HTML."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -10,20 +10,20 @@ from hedon.analysis.result import ResultTable
 from hedon.statistic.minimum import FOR_INTERVAL
 
 NOTHING = "-"
-"""Stands for a number that there is not."""
+"""Shown in place of a missing number."""
 HIDDEN = ("source", "region_low", "region_high", "window")
-"""Columns that only the files hold."""
+"""Columns that appear only in the files."""
 _INTERVAL = ("low", "high")
 _KEYS = ("condition", "species", "fitness", "quantity", "test")
-"""Columns that tell the rows of one gene apart."""
+"""Columns that distinguish the rows of one gene."""
 
 
 def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str], list[list[str]]]:
-    """What a reader sees of a table: headers and rows.
+    """The headers and rows of a table as a reader sees them.
 
-    Neutral genes, which show what chance does, become one row. The bounds of an interval become one column, empty below
-    five worlds; a column `condition` with a single value is left out where there is only one condition, and so is
-    every column without any value.
+    The rows of neutral genes, which show drift, are merged into one. The bounds of an interval become one column, empty
+    for fewer than five worlds. A column `condition` with a single value is omitted if there is only one condition, and
+    so is every column without a value.
     """
     rows = _with_neutral_folded(table.rows)
     single = "condition" in rows.columns and rows["condition"].n_unique() == 1 and not table.several
@@ -40,7 +40,7 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
 
 
 def table_json(table: ResultTable) -> dict[str, Any]:
-    """A table as JSON files hold it."""
+    """A table as it is stored in JSON files."""
     return {"title": table.title, "note": table.note, "rows": table.rows.to_dicts()}
 
 
@@ -52,7 +52,7 @@ def table_csv(table: ResultTable) -> str:
 
 
 def _with_neutral_folded(rows: pl.DataFrame) -> pl.DataFrame:
-    """The rows with those of several neutral genes as one: their number, how many have a small p, and their means."""
+    """The rows, with neutral genes merged into one row: their number, how many have a small p, and their means."""
     if rows.is_empty() or rows.schema.get("weight") != pl.String:
         return rows
     keys = [name for name in _KEYS if name in rows.columns]
@@ -73,12 +73,12 @@ def _with_neutral_folded(rows: pl.DataFrame) -> pl.DataFrame:
 
 
 def is_numeric(rows: Sequence[Sequence[str]], column: int) -> bool:
-    """Whether a shown column holds numbers, which are aligned to the right."""
+    """Whether a displayed column contains numbers, which are right-aligned."""
     return all(not row[column] or row[column][0] in "0123456789-" for row in rows)
 
 
 def format_number(value: float | None) -> str:
-    """A number as a reader wants it: whole from 1000 on, else three figures; a dash for None."""
+    """A number for display: an integer from 1000 up, otherwise three significant figures; a dash for None."""
     if value is None:
         return NOTHING
     if isinstance(value, int) or abs(value) >= 1000:
@@ -102,5 +102,5 @@ def _format(value: Any) -> str:
     if value is None:
         return ""
     if isinstance(value, float) and 0 < abs(value) < 1e-12:
-        return "0"  # rounding
+        return "0"  # a rounding error
     return format_number(value) if isinstance(value, (int, float)) else str(value)

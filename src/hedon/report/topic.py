@@ -1,4 +1,4 @@
-"""The list of topics, by the names that `hedon analyze --only` takes."""
+"""The topics of an analysis, by the names that `hedon analyze --only` accepts."""
 
 from collections.abc import Callable, Sequence
 
@@ -30,14 +30,14 @@ TOPICS: dict[str, Callable[[Conditions], list[ResultTable]]] = {
 
 
 class TopicError(HedonError):
-    """There is no topic of that name."""
+    """No topic has this name."""
 
 
 def require_topics(names: Sequence[str]) -> Sequence[str]:
-    """The same names.
+    """Checks names of topics and returns them unchanged.
 
     Raises:
-        TopicError: one of them is none.
+        TopicError: One of them is not a topic.
     """
     for name in names:
         if name not in TOPICS:
@@ -48,10 +48,10 @@ def require_topics(names: Sequence[str]) -> Sequence[str]:
 
 
 def choose_topics(names: str | None) -> tuple[str, ...]:
-    """The topics of a list such as "lifetime,selection", in their order; all of them for None.
+    """The topics in a list such as "lifetime,selection", in that order; all topics for None.
 
     Raises:
-        TopicError: one of them is none.
+        TopicError: One of the names is not a topic.
     """
     if names is None:
         return tuple(TOPICS)
@@ -60,21 +60,24 @@ def choose_topics(names: str | None) -> tuple[str, ...]:
 
 
 ONE_PARENT = ("genealogy", "price", "drift", "reversion", "mutation")
-"""Topics that follow genes along pedigrees, from one parent to its child."""
+"""Topics that follow genes along pedigrees, which requires that each child has one parent."""
 
 
 Tell = Callable[[int, int, str], None]
-"""Is told of each step before it begins: how many are done, of how many, and what comes."""
+"""Progress callback, called before each step with the number of finished steps, their total and the next step."""
 
 
 def tell_nobody(done: int, of: int, step: str) -> None:
-    """A `Tell` for those who need not know."""
+    """A progress callback that ignores its arguments."""
 
 
 def run_topics(
     conditions: Conditions, names: Sequence[str] = tuple(TOPICS), tell: Tell = tell_nobody
 ) -> list[ResultTable]:
-    """The tables of some topics; those without rows are left out, and worlds with two parents where one is needed."""
+    """The tables of some topics.
+
+    Tables without rows are omitted, and worlds with two parents are left out of topics that need one parent.
+    """
     trees = {
         condition: alone
         for condition, worlds in conditions.items()

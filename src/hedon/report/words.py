@@ -1,4 +1,4 @@
-"""What a report answers in words, before all figures: which weights are selected, and which may have drifted."""
+"""The conclusions at the top of a report, in words: which weights were selected, and which may have drifted."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -14,9 +14,9 @@ from hedon.record.reader import Run
 from hedon.statistic.law import normal_quantile
 
 LEVEL = 0.05
-"""Chance at or below which a weight is called selected, corrected for all weights and tests."""
+"""Largest p, corrected for all weights and tests, at which a weight is called selected."""
 HINT = 0.2
-"""Chance of the test alone above which nothing speaks for selection, so that no time is told that would decide it."""
+"""Uncorrected p above which there is no sign of selection, so that the report estimates no time to a decision."""
 UNLEARNED = (
     "These agents do not learn from their rewards, so selection cannot see the weights, unless a program acts by them."
 )
@@ -27,10 +27,10 @@ UNKNOWN = (
 
 
 def answers(conditions: Conditions, tables: Mapping[str, ResultTable], runs: Sequence[Run]) -> dict[str, list[str]]:
-    """By condition, a sentence or two for each weight: where it ended, what chance does, and what follows.
+    """One or two sentences for each weight, by condition: where it ended, what drift does, and the conclusion.
 
-    The verdict is that of the test "direction" of the topic drift: the mean score against neutral genes along the same
-    pedigrees, with Holm's correction.
+    The verdict comes from the test "direction" of the topic drift: the mean score against neutral genes along the same
+    pedigrees, after Holm correction.
     """
     return {name: _answers(worlds, tables, runs) for name, worlds in conditions.items()}
 
@@ -39,7 +39,7 @@ def _answers(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable], r
     tests, scores = (_rows(tables.get(name), worlds[0].condition) for name in ("drift", "drift_world"))
     if tests.is_empty() or scores.is_empty():
         return [UNKNOWN]
-    corrected = tests.filter(pl.col("p_holm").is_not_null() & (pl.col("test") != "marker"))  # another family of tests
+    corrected = tests.filter(pl.col("p_holm").is_not_null() & (pl.col("test") != "marker"))  # its own family of tests
     seconds = _seconds(worlds, runs)
     who = _who(scores, worlds)
     told = [] if worlds[0].own.learning.policy == "ppo" else [UNLEARNED]
@@ -58,14 +58,14 @@ def _rows(table: ResultTable | None, condition: str) -> pl.DataFrame:
 
 
 def _who(scores: pl.DataFrame, worlds: Sequence[WorldRecord]) -> str:
-    """Whose weights are meant: how the sentence about each begins."""
+    """The agents whose weights are meant, as the start of a sentence."""
     extinct = any(world.extinct_step is not None for world in worlds)
     last = ", or at the last record of a world that died out" if extinct else ""
     return f"Among the agents alive at the end{last} (mean generation {_span(scores['generation'])}), the"
 
 
 def _ended(name: str, scores: pl.DataFrame) -> str:
-    """Where a weight ended, and how far chance alone carries it."""
+    """Where a weight ended, and how far drift would carry it."""
     title, means = weight_title(name), scores["mean"]
     title += "," if "," in title else ""
     low, high = scores["null_low"].mean(), scores["null_high"].mean()
@@ -79,20 +79,20 @@ def _ended(name: str, scores: pl.DataFrame) -> str:
 
 
 def _span(values: pl.Series) -> str:
-    """The range of some numbers, with one digit after the point below ten."""
+    """The range of some numbers, with one decimal below ten."""
     known = values.to_numpy().astype(np.float64)
     low, high = (f"{value:.1f}" if value < 10 else f"{value:.0f}" for value in (known.min(), known.max()))
     return low if low == high else f"{low} to {high}"
 
 
 def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
-    """What the test says; where it does not decide, how many times the steps would, if all goes on like this."""
+    """The result of the test; if undecided, also how many times as many steps would decide it at the present rate."""
     score, chance = test["effect"], f"p = {test['p_holm']:.2g}, corrected for {tests} tests against drift"
     if test["p_holm"] <= LEVEL:
         return f"selected {'for' if score > 0 else 'against'} ({chance})."
     if test["p"] > HINT:
         return f"selection is not shown ({chance}), and nothing speaks for it so far."
-    # What selection adds grows with time, what drift adds with its square root; worlds add up likewise.
+    # The effect of selection grows with time, that of drift with its square root; the same holds for sums over worlds.
     times = (-normal_quantile(LEVEL / 2 / tests) / score) ** 2 / test["worlds"]
     after = f"about {max(times, 1.1):.2g} times the steps"
     wait = "" if seconds is None else f", {_minutes((max(times, 1.1) - 1) * seconds)} more on this machine,"
@@ -100,9 +100,9 @@ def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
 
 
 def _seconds(worlds: Sequence[WorldRecord], runs: Sequence[Run]) -> float | None:
-    """What the steps of the runs of these worlds took; None where a run does not say it [s]."""
+    """Time that the steps of these worlds' runs took [s]; None if a run does not record it."""
     if any(world.config.driven for world in worlds):
-        return None  # no command goes on with them
+        return None  # no command can continue them
     names = {world.run for world in worlds}
     times = [run.manifest.run_seconds for run in runs if run.path.name in names]
     known = [time for time in times if time]
