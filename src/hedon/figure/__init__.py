@@ -1,4 +1,4 @@
-"""Pictures: one question per file, drawn from numbers that are there. Nothing is computed here but what is drawn."""
+"""Figures, one question per file, drawn from existing numbers; only what is drawn is computed here."""
 
 from lazy_loader import attach_stub
 

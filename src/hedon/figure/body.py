@@ -1,6 +1,6 @@
-"""What is an agent's body: its mouth, its touch, its motors, its rays?
+"""What does an agent's body look like: its mouth, touch sectors, motors and rays?
 
-Drawn with the heading upward. Angles count from the heading, counter-clockwise.
+The body is drawn with its heading upward. Angles are measured counter-clockwise from the heading.
 """
 
 import math
@@ -21,13 +21,13 @@ _BODY = "#dce8f2"
 _MOUTH_WIDTH = 0.1  # of the radius
 _FORCE_LENGTH = 0.55  # of the arrow of the largest force, in radii
 _VIEW = 2.1  # how far the picture of the body reaches to each side, in radii
-_SCALE = 100.0  # length of the line that tells the scale of the rays [u]
+_SCALE = 100.0  # length of the scale bar of the rays [u]
 
 Point = tuple[float, float]
 
 
 def draw_body(config: Config) -> Figure:
-    """The body with mouth, touch sectors and motors; beside it the rays at full length."""
+    """Draws the body with mouth, touch sectors and motors, and next to it the rays at full length."""
     own = next(iter(config.species.values()))
     with styled():
         figure = new_figure(8.6, 3.7)
@@ -142,7 +142,7 @@ def _draw_rays(axes: Axes, own: SpeciesConfig) -> None:
 
 
 def _point_out(axes: Axes, text: str, place: Point, label: Point) -> None:
-    """Writes a label with a line to the place that it names."""
+    """Writes a label with a line to the part that it names."""
     arrow = {"arrowstyle": "-", "color": MUTED, "linewidth": 0.8}
     axes.annotate(text, place, xytext=label, fontsize=8, ha="center", va="center", arrowprops=arrow)
 

@@ -1,4 +1,4 @@
-"""How do the worlds of several conditions fare over time, side by side?"""
+"""How do the worlds of several conditions change over time, side by side?"""
 
 from collections.abc import Mapping
 
@@ -10,11 +10,13 @@ from hedon.figure.trace import draw_time_axis, draw_traces, last_step
 
 
 def draw_courses(histories: Mapping[str, pl.DataFrame], panels: Mapping[str, str]) -> Figure:
-    """A panel per quantity, a color per condition: thick the mean over its worlds, with its interval, thin the worlds.
+    """Draws a panel per quantity and a color per condition.
+
+    Thick lines are means over worlds, with their interval; thin lines are worlds.
 
     Args:
-        histories: per condition, of `population.history`, with intervals of equal length; at least one.
-        panels: columns of the histories, with the title of each.
+        histories: History of each condition, from `population.history`, with intervals of equal length; at least one.
+        panels: Columns of the histories to draw, with the title of each.
     """
     end = max(last_step(rows) for rows in histories.values())
     with styled():

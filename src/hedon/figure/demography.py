@@ -1,4 +1,4 @@
-"""What do the laws of birth and death make of energy, and at which energies do agents live?"""
+"""How do births and deaths depend on energy, and at which energies do agents live?"""
 
 import math
 
@@ -17,13 +17,13 @@ from hedon.demography.life import expected_lifetime, reproduction_number
 from hedon.demography.schedule import birth_of, mean_hazard
 from hedon.figure.style import BLUE, INK, ORANGE, new_figure, number_log_axis, step_unit, styled
 
-_LINEAR_BELOW = 1.0  # energy up to which the axis is linear, so that it holds 0
+_LINEAR_BELOW = 1.0  # energy up to which the axis is linear, so that it can include 0
 _LINEAR_SCALE = (1.0 - 1.0 / 10.0) / math.log(10.0)
-"""Length of the linear part in decades: the axis then has the same slope on either side, and curves have no kink."""
+"""Length of the linear part in decades, so that the slope of the axis is continuous and curves have no kink."""
 
 
 def draw_demography(own: SpeciesConfig, populations: list[pl.DataFrame]) -> Figure:
-    """R0 and mean life at constant energy; shaded, where the living were in the last tenth of the runs."""
+    """Draws R0 and mean lifetime at constant energy; shading shows the energies in the last tenth of the runs."""
     energy = _energies(own)
     lifetime = expected_lifetime(mean_hazard(own), energy)
     finite = lifetime[np.isfinite(lifetime)]
@@ -47,7 +47,7 @@ def draw_demography(own: SpeciesConfig, populations: list[pl.DataFrame]) -> Figu
 
 
 def draw_reproduction(axes: Axes, own: SpeciesConfig) -> Line2D:
-    """Draws R0 at constant energy, and the line R0 = 1 at which a lineage keeps its size.
+    """Draws R0 at constant energy, and the line R0 = 1, at which a lineage keeps its size.
 
     Returns:
         The line R0 = 1, with its label, for the legend.
@@ -76,7 +76,7 @@ def _set_axes(axes: Axes, energy: NDArray[np.float64]) -> None:
 
 
 def _quartiles(populations: list[pl.DataFrame]) -> tuple[float, float, float] | None:
-    """Quartiles of energy, means over the last tenth of the worlds."""
+    """Quartiles of energy, averaged over the last tenth of the worlds."""
     names = ("energy_q25", "energy_median", "energy_q75")
     tails = [run_tail(rows).select(pl.col(*names).cast(pl.Float64).mean()) for rows in populations if rows.height]
     known = pl.concat(tails).drop_nulls() if tails else None

@@ -1,4 +1,4 @@
-"""Which weights went further than drift? Scores of worlds against neutral genes, by condition."""
+"""Which weights moved further than drift? Scores of worlds against neutral genes, by condition."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 from hedon.figure.style import GRID, INK, PALE, new_figure, seed_color, styled
 
 _NORMAL = 1.96  # standard deviations that hold 95 % of a normal law
-_LEAST = 3.0  # reach of the axis
-_SPREAD = 0.22  # of the worlds of a condition, up and down
+_LEAST = 3.0  # smallest half range of the axis
+_SPREAD = 0.22  # vertical spread of the worlds of a condition
 
 
 def draw_scores(
@@ -19,12 +19,12 @@ def draw_scores(
     titles: Mapping[str, str],
     means: Mapping[str, Mapping[str, Any]],
 ) -> Figure:
-    """A panel per weight, a row per condition, a point per world; below, the mean over all.
+    """Draws a panel per weight, a row per condition and a point per world; the last row is the mean over all worlds.
 
     Args:
-        points: per condition and seed the score of each weight [sd of drift].
-        titles: per genome column, in the order of the panels.
-        means: per genome column "effect", "low" and "high" over all worlds; bounds may be None.
+        points: Score of each weight, by condition and seed [sd of drift].
+        titles: Title of each genome column, in the order of the panels.
+        means: For each genome column "effect", "low" and "high" over all worlds; bounds may be None.
     """
     seeds = sorted({seed for by_seed in points.values() for seed in by_seed})
     every = [score for by_seed in points.values() for scores in by_seed.values() for score in scores.values()]
@@ -53,7 +53,7 @@ def draw_scores(
 
 
 def _frame(axes: Axes, title: str, reach: float) -> None:
-    """The band in which 95 % of drifting genes lie, and where drift is on average."""
+    """The band that contains 95 % of drifting genes, and the mean of drift."""
     axes.set_title(title)
     axes.set(xlim=(-reach, reach), xlabel="score [sd of drift]")
     axes.grid(visible=False)
@@ -68,5 +68,5 @@ def _draw_mean(axes: Axes, row: int, mean: Mapping[str, Any]) -> None:
 
 
 def _offset(index: int, count: int) -> float:
-    """From −1 to 1, evenly, in the order of the seeds."""
+    """Vertical position of a world, evenly spaced from −1 to 1 in the order of the seeds."""
     return 2.0 * index / (count - 1) - 1.0 if count > 1 else 0.0

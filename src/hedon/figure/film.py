@@ -1,4 +1,4 @@
-"""What does a world look like, picture after picture? As the figure of the world, but drawn anew in each place."""
+"""What does a world look like, frame by frame? Like the figure of the world, but walls and obstacles are drawn once."""
 
 from collections.abc import Mapping
 
@@ -14,24 +14,24 @@ from hedon.figure.world import draw_agents, draw_foods, draw_obstacles, draw_rin
 from hedon.record.snapshot import Snapshot
 
 CAPTION = 34
-"""Height of the line of text above the world [pixel]; a legend that does not fit into it has lines of its own."""
+"""Height of the line of text above the world [pixel]; a legend that does not fit into it gets its own lines."""
 MARGIN = 0.012
-"""Of the text from the left side, in widths of the picture."""
+"""Distance of the text from the left edge, in widths of the picture."""
 GROWTH = 1.2
-"""How much longer the text may get while a world goes on."""
+"""Factor by which the text may get longer as a world continues."""
 CLOSE = 2.0
-"""Width of the part of the arena that is seen beside a followed agent, in lengths of its rays."""
+"""Width of the arena shown on each side of a followed agent, in lengths of its rays."""
 
 
 class Film:
-    """Draws moments of one world as pictures of one size.
+    """Draws moments of one world as pictures of the same size.
 
     Args:
-        snapshot: any moment of the world.
-        colors: per food kind.
-        width: of the pictures [pixel]; made even, as video formats want it.
-        top: the energy from which on an agent has the darkest color.
-        follow: the agent that the view follows within the arena; None to show the whole arena.
+        snapshot: Any moment of the world; it provides the arena.
+        colors: Color of each food kind.
+        width: Width of the pictures [pixel]; made even, as video formats require.
+        top: Energy at and above which an agent has the darkest color.
+        follow: ID of the agent that the view follows within the arena; None to show the whole arena.
     """
 
     def __init__(
@@ -68,9 +68,9 @@ class Film:
         self._fixed = len(self._axes.collections)
 
     def draw(self, snapshot: Snapshot) -> memoryview:
-        """One picture: four bytes for each pixel (red, green, blue, opacity), row by row from the top.
+        """Draws one picture: four bytes for each pixel (red, green, blue, opacity), row by row from the top.
 
-        Valid until the next call.
+        The picture is valid until the next call.
         """
         for artist in list(self._axes.collections)[self._fixed :]:
             artist.remove()
@@ -79,7 +79,7 @@ class Film:
             if len(snapshot.x):
                 draw_agents(self._axes, snapshot, self._top)
             followed = np.flatnonzero(snapshot.agent_id == self._follow) if self._follow is not None else []
-            if len(followed):  # else it is not yet born, or has died: the view stays
+            if len(followed):  # otherwise it is unborn or dead, and the view stays
                 self._look_at(np.array([snapshot.x[followed[0]], snapshot.y[followed[0]]]))
                 draw_ring(self._axes, snapshot, followed[0])
             (left, bottom), (right, top) = self._middle - self._span / 2, self._middle + self._span / 2
@@ -89,7 +89,7 @@ class Film:
         return self._canvas.buffer_rgba()
 
     def _look_at(self, place: np.ndarray) -> None:
-        """Moves the view there, as far as it stays within the arena."""
+        """Centers the view on a place, as far as the arena allows."""
         half = self._span / 2 - self._rim
         self._middle = np.clip(place, self._low + half, self._high - half)
 
@@ -98,7 +98,7 @@ class Film:
         return f"seed {snapshot.seed}{agent}, step {snapshot.step:,}: {len(snapshot.x)} agents"
 
     def _legend(self, snapshot: Snapshot) -> tuple[Legend, int]:
-        """The legend, not yet in its place, and the height of all that is above the world [pixel]."""
+        """The legend, not yet placed, and the height of everything above the world [pixel]."""
         dot = {"marker": "o", "linestyle": "", "markersize": 5}
         marks = [Line2D([], [], color=self._colors[kind], label=kind, **dot) for kind in snapshot.food_kinds]
         if len(snapshot.species_names) > 1:

@@ -21,7 +21,7 @@ from hedon.figure.style import (
 )
 from hedon.figure.trace import draw_time_axis, draw_traces, draw_zero_line, last_step
 
-_MIN_HALF_RANGE = 0.5  # of the weight axis, so that noise of the founders does not look like evolution
+_MIN_HALF_RANGE = 0.5  # of the weight axis, so that variation among founders does not look like evolution
 _WIDEST = 10.0  # figure [inch]
 _ROOMY = 4  # columns whose titles fit in full size
 _POINTS = 200  # intervals of the time axis
@@ -29,15 +29,15 @@ _POINTS = 200  # intervals of the time axis
 
 @dataclass(frozen=True)
 class HistoryRow:
-    """The worlds of one setting, drawn as a row of panels.
+    """The worlds of one condition, drawn as a row of panels.
 
     Attributes:
-        population: table `population`.
-        title: what the setting is called.
-        remark: what else must be known of it.
-        extinct: worlds that died out; where it is not known, those that end before others are taken for such.
-        drift: by genome column, where drift alone would have it, as `drift_bands` gives it; genes without a band are
-            said to have no control.
+        population: Rows of the table `population`.
+        title: Name of the condition.
+        remark: Further information shown under the title.
+        extinct: Worlds that died out; None to assume this of worlds that end before others.
+        drift: Drift band of each genome column, as `drift_bands` returns it; a gene without a band is marked as having
+            no control.
     """
 
     population: pl.DataFrame
@@ -53,17 +53,18 @@ def draw_histories(
     neutral_names: Sequence[str],
     colors: Mapping[str, str],
 ) -> Figure:
-    """One row per setting, one column per reward weight and for the neutral genes; the same axes throughout.
+    """Draws one row per condition, with a column per reward weight and one for the neutral genes; all share their axes.
 
-    Thin lines are means over the living of one world, thick lines are means over worlds with their 95 %
-    interval. A cross ends the line of a world that died out. Shaded behind each is where drift alone would have it in
-    95 % of worlds. Each neutral gene of each world is a line of the last column, which the axes may cut off.
+    Thin lines are means over the living of one world; thick lines are means over worlds, with their 95 %
+    interval. A cross ends the line of a world that died out. The shaded band is the range in which drift alone would
+    leave the weight in 95 % of worlds. In the last column, each neutral gene of each world is a line; the axes may cut
+    some lines off.
 
     Args:
-        settings: from top to bottom, at least one.
-        reward_names: genome columns that have an effect, of all settings.
-        neutral_names: the other genome columns.
-        colors: per food kind.
+        settings: The conditions from top to bottom, at least one.
+        reward_names: Genome columns that have an effect, of all conditions.
+        neutral_names: The other genome columns.
+        colors: Color of each food kind.
     """
     tints = weight_colors(reward_names, colors)
     shown = {name: (weight_title(name), tints[name]) for name in reward_names}
@@ -104,7 +105,7 @@ def draw_histories(
 
 
 def _draw_band(axes: Axes, band: DriftBand | None, rows: pl.DataFrame, end: float) -> float:
-    """Shades where drift alone would have a gene, or says that this is not known; returns how far it is from 0."""
+    """Shades the drift band of a gene, or writes that it is unknown; returns its largest distance from 0."""
     if rows.is_empty():
         return 0.0
     if band is None:
@@ -123,7 +124,7 @@ def _draw_neutral(axes: Axes, rows: pl.DataFrame, neutral_names: Sequence[str], 
 
 
 def _say_setting(axes: Axes, setting: HistoryRow) -> None:
-    """Writes what a row shows above it, higher than the title of a panel."""
+    """Writes the title and remark of a row above it, higher than the titles of its panels."""
     if not setting.title:
         return
     lift = 24 if axes.get_title("left") else 6
@@ -139,4 +140,4 @@ def _say_setting(axes: Axes, setting: HistoryRow) -> None:
         color=MUTED,
         fontsize=8.0,
     )
-    remark.set_in_layout(False)  # it may be wider than the panel
+    remark.set_in_layout(False)  # may be wider than the panel

@@ -1,4 +1,4 @@
-"""How do predators and prey live together: their numbers, how they die, and how near they are?"""
+"""How do predators and prey live together: how many are there, what do they die of, and how close are they?"""
 
 from collections.abc import Mapping
 
@@ -22,16 +22,16 @@ from hedon.figure.style import (
 from hedon.figure.trace import draw_time_axis, draw_traces, last_step
 
 SMOOTH = 9
-"""Neighboring frames whose mean is drawn, so that single ones do not hide the course."""
+"""Number of neighboring frames that are averaged, so that the noise of single frames does not hide the trend."""
 CAUSE_COLORS = {"age_energy": MUTED, "starved": BLUE, "eaten": VERMILION}
 CAUSE_WORDS = {"age_energy": "by age and energy", "starved": "starved", "eaten": "eaten"}
 
 
 def draw_numbers(histories: Mapping[str, pl.DataFrame]) -> Figure:
-    """Numbers alive over time, and one number against the other: a line per world.
+    """Draws the numbers alive over time, and one number against the other, with a line per world.
 
     Args:
-        histories: of two species, by name, with the columns world, bin, step and alive.
+        histories: Histories of two species by name, with the columns world, bin, step and alive.
     """
     (first, one), (second, other) = histories.items()
     every = pl.concat([one, other])
@@ -60,10 +60,10 @@ def draw_numbers(histories: Mapping[str, pl.DataFrame]) -> Figure:
 
 
 def draw_causes(rates: Mapping[str, pl.DataFrame]) -> Figure:
-    """How often agents die of what, over time: a panel per species.
+    """Draws the rate of each cause of death over time, with a panel per species.
 
     Args:
-        rates: of each species, by name; see `hedon.analysis.world.population.death_rates`.
+        rates: Death rates of each species by name, from `hedon.analysis.world.population.death_rates`.
     """
     with styled():
         figure = new_figure(4.3 * len(rates), 3.2)
@@ -83,12 +83,12 @@ def draw_causes(rates: Mapping[str, pl.DataFrame]) -> Figure:
 
 
 def draw_company(worlds: Mapping[int, pl.DataFrame], species: str, hunter: str) -> Figure:
-    """Sizes of groups and distances to the nearest hunter over time, beside what chance would give.
+    """Draws group sizes and distances to the nearest hunter over time, with the values expected by chance.
 
     Args:
-        worlds: by seed; see `hedon.analysis.world.group.company`.
-        species: what it is called.
-        hunter: what those are called that eat it.
+        worlds: Company of each world by seed, from `hedon.analysis.world.group.company`.
+        species: Name of the species whose groups are drawn.
+        hunter: Name of the species that eats it.
     """
     panels = {
         "group": f"group of {species} in which one of them is",

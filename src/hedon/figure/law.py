@@ -25,17 +25,17 @@ from hedon.figure.style import (
 )
 
 ENERGIES = {0.0: VERMILION, 5.0: ORANGE, 10.0: GREEN, 20.0: SKY, 40.0: BLUE}
-"""Energies that curves are drawn for, with their colors."""
+"""Energies for which curves are drawn, with their colors."""
 AGES = {0.0: PINK, 500_000.0: VIOLET, 1_000_000.0: MUTED, 1_500_000.0: INK}
-"""Ages that curves are drawn for [step], with their colors."""
-_MOST_ENERGY = 60.0  # up to which curves change
-_OLDEST = 2_000_000.0  # by then nearly everybody is dead, whatever the energy [step]
-_YOUNGEST = 100.0  # where the logarithmic axis of ages begins [step]
+"""Ages for which curves are drawn [step], with their colors."""
+_MOST_ENERGY = 60.0  # the curves are flat beyond it
+_OLDEST = 2_000_000.0  # nearly all agents are dead by then, whatever their energy [step]
+_YOUNGEST = 100.0  # start of the logarithmic axis of ages [step]
 _POINTS = 241
 
 
 def draw_hazard(config: HazardConfig) -> Figure:
-    """The chance of death by energy and by age, and survival at constant energy with the mean life."""
+    """Draws the chance of death by energy and by age, and survival at constant energy with the mean lifetime."""
     with styled():
         figure = new_figure(8.6, 5.6)
         panels = figure.subplot_mosaic([["energy", "age"], ["survival", "survival"]], height_ratios=(1.2, 1.0))
@@ -47,7 +47,7 @@ def draw_hazard(config: HazardConfig) -> Figure:
 
 
 def draw_birth(own: SpeciesConfig) -> Figure:
-    """The chance of a birth by energy, and the children that are tried in a life at constant energy."""
+    """Draws the chance of a birth by energy, and the births attempted in a life at constant energy."""
     energy = np.linspace(0, min(_MOST_ENERGY, own.energy.capacity), _POINTS)
     none = float(reproduction_number(own.hazard, birth_of(own), 0.0))
     with styled():

@@ -1,4 +1,4 @@
-"""Did the ancestors of those who are left differ from all who lived with them?"""
+"""Did the ancestors of the survivors differ from their contemporaries?"""
 
 from collections.abc import Mapping
 
@@ -15,11 +15,11 @@ from hedon.statistic.minimum import FOR_INTERVAL
 
 
 def draw_lineages(lines: pl.DataFrame, titles: Mapping[str, str], colors: Mapping[str, str]) -> Figure:
-    """The number of lines that lead to the survivors, and the weights along them.
+    """Draws the number of lines that lead to the survivors, and the weights along them.
 
-    Thick: mean weight over these lines; thin and gray: over all alive at that time. Both are means over
-    worlds, the band is the lines' 95 % interval. Time is counted back from the end, since lines are the fewer
-    the further one looks back.
+    Thick: mean weight over these lines. Thin and gray: mean weight over all agents alive at that time. Both are means
+    over worlds; the band is the 95 % interval of the lines. Time is counted back from the end, since there are fewer
+    lines the further back one looks.
     """
     if lines.is_empty():
         return draw_message("no agents recorded")
@@ -65,7 +65,7 @@ def _draw_weight(axes: Axes, rows: pl.DataFrame, unit: float, color: str) -> Non
 
 
 def _over_worlds(rows: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Step, mean and bounds over worlds; worlds are matched by the number of the point, for lengths may differ."""
+    """Step, mean and bounds over worlds, which are matched by the number of the point, since lengths may differ."""
     numbered = rows.with_columns(point=pl.int_range(pl.len()).over("seed")).drop_nulls(column)
     table = []
     for part in numbered.sort("point").partition_by("point"):

@@ -1,4 +1,4 @@
-"""A figure with the question that it answers and how it is read."""
+"""A figure with the question that it answers and how to read it."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,13 +9,13 @@ if TYPE_CHECKING:  # takes a third of a second to load
 
 @dataclass(frozen=True)
 class NamedFigure:
-    """A figure.
+    """A figure with its name, question and caption.
 
     Attributes:
-        name: names its file.
-        question: that it answers, its heading.
-        figure: itself.
-        caption: how to read it; may be empty.
+        name: Stem of the name of its file.
+        question: The question that it answers, used as its heading.
+        figure: The Matplotlib figure.
+        caption: How to read it; may be empty.
     """
 
     name: str
@@ -29,9 +29,9 @@ class FigureKind:
     """A kind of figure.
 
     Attributes:
-        name: names its file.
-        question: that it answers, its heading.
-        caption: what is drawn and how to read it.
+        name: Stem of the name of its file.
+        question: The question that it answers, used as its heading.
+        caption: What the figure shows and how to read it.
     """
 
     name: str

@@ -1,19 +1,19 @@
-"""Which walls enclose the arena?"""
+"""Finds the walls that enclose the arena."""
 
 import numpy as np
 
-_NEAR = 1e-2  # ends of joined walls lie within this distance [u]
+_NEAR = 1e-2  # largest distance between the ends of joined walls [u]
 
 
 def wall_outline(walls: np.ndarray) -> np.ndarray | None:
     """Follows the walls from the first one, end to end, until they close.
 
     Args:
-        walls: segments from (ax, ay) to (bx, by) [u], shape (w, 4), in any order and direction; inner walls
+        walls: Segments from (ax, ay) to (bx, by) [u], shape (w, 4), in any order and direction; inner walls
             may follow the outer ones.
 
     Returns:
-        Corners of the closed polygon that the first wall belongs to [u], shape (n, 2); None where it does
+        Corners of the closed polygon that the first wall belongs to [u], shape (n, 2); None if it does
         not close.
     """
     if len(walls) == 0:

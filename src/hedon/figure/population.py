@@ -10,11 +10,11 @@ from hedon.analysis.world.population import history
 from hedon.figure.style import BLUE, INK, ORANGE, VERMILION, VIOLET, legend_above, new_figure, say_empty, styled
 from hedon.figure.trace import draw_time_axis, draw_traces
 
-_POINTS = 100  # few enough that chance does not hide the course
+_POINTS = 100  # few enough that noise does not hide the trend
 
 
 def draw_population(population: pl.DataFrame, meals: Sequence[str], colors: Mapping[str, str]) -> Figure:
-    """Six panels: alive, births and deaths, failed births, energy, what is eaten, generation."""
+    """Six panels: agents alive, births and deaths, failed births, energy, meals, generation."""
     rows = history(population, meals, points=_POINTS)
     with styled():
         figure = new_figure(8.6, 4.9)

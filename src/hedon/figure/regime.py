@@ -8,11 +8,11 @@ from hedon.analysis.world.regime import BETWEEN, EXTINCT, FOOD, IDLE, REGIMES, R
 from hedon.figure.style import GREEN, INK, ORANGE, PALE, VIOLET, draw_message, new_figure, step_unit, styled
 
 REGIME_COLORS = {ROOM: ORANGE, FOOD: GREEN, IDLE: VIOLET, BETWEEN: PALE, EXTINCT: INK}
-_NAMED_WORLDS = 24  # rows that still have room for their seed
+_NAMED_WORLDS = 24  # most rows that leave room for their seeds
 
 
 def draw_regimes(regimes: pl.DataFrame) -> Figure:
-    """A row of colors per world, over time."""
+    """Draws the regime of each world over time, as a row of colors."""
     seeds = regimes["seed"].unique(maintain_order=True).to_list() if regimes.height else []
     if not seeds:
         return draw_message("nothing recorded yet")
@@ -23,7 +23,7 @@ def draw_regimes(regimes: pl.DataFrame) -> Figure:
         unit, name = step_unit(float(regimes["step"].to_numpy().max()))
         for row, seed in enumerate(seeds):
             mine = regimes.filter(pl.col("seed") == seed)
-            # Neighbors of one regime as one bar: seams between bars would show.
+            # Adjacent intervals in the same regime become one bar, since seams between bars would be visible.
             parts = mine.group_by(pl.col("regime").rle_id().alias("part"), maintain_order=True)
             merged = parts.agg(pl.col("regime").first(), pl.col("step").max(), pl.col("steps").sum())
             spans = [

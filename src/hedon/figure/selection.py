@@ -13,16 +13,16 @@ from hedon.figure.trace import draw_zero_line
 from hedon.statistic.minimum import FOR_INTERVAL
 
 _ROWS = {"children": "children", "lifespan": "length of life"}
-_LEAST_RANGE = 0.1  # of the gradient axis, so that noise does not look like selection
+_LEAST_RANGE = 0.1  # shortest gradient axis, so that noise does not look like selection
 
 
 def draw_selection(
     windows: pl.DataFrame, worlds: pl.DataFrame, titles: Mapping[str, str], colors: Mapping[str, str]
 ) -> Figure:
-    """Standardized gradients over time: a panel per weight, a row per measure of fitness.
+    """Draws standardized gradients over time: a column per weight, a row per measure of fitness.
 
-    Points with bars are means over worlds with their 95 % interval; with too few worlds for one, the worlds themselves.
-    Hollow points stand for cohorts that have not all died.
+    Points with bars are means over worlds with their 95 % interval; if there are too few worlds for an interval, points
+    are worlds. Hollow points are cohorts in which some agents are still alive.
     """
     if worlds.is_empty():
         return draw_message("nothing recorded yet")
@@ -71,6 +71,6 @@ def _draw_worlds(axes: Axes, worlds: pl.DataFrame, unit: float, color: str) -> N
 
 
 def _points(axes: Axes, x: np.ndarray, values: np.ndarray, color: str, whole: np.ndarray) -> None:
-    """Points, hollow for cohorts whose lives are not yet known in full."""
+    """Points, hollow for cohorts with agents that are still alive."""
     fill = [color if known else "white" for known in whole]
     axes.scatter(x, values, s=18, c=fill, edgecolors=color, linewidths=1.0, zorder=3)

@@ -1,6 +1,6 @@
-"""How every figure looks: colors that the color-blind can tell apart, quiet axes, sizes for a page.
+"""The style of all figures: colors that color-blind readers can distinguish, light axes, and sizes for a page.
 
-Colors: Okabe & Ito (2008), "Color universal design", and grays. `config.color` has those of species, foods and weights.
+Colors: Okabe & Ito (2008), "Color universal design", and grays. `config.color` sets those of species, foods, weights.
 """
 
 import io
@@ -38,7 +38,7 @@ SEED_COLORS = (BLUE, VERMILION, GREEN, ORANGE, PINK, SKY, VIOLET, MUTED, YELLOW,
 STYLE: dict[Any, Any] = {
     "figure.facecolor": "white",
     "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],  # comes with Matplotlib: the same figures everywhere
+    "font.sans-serif": ["DejaVu Sans"],  # ships with Matplotlib, so figures are the same everywhere
     "font.size": 9.0,
     "text.color": INK,
     "axes.titlesize": 10.0,
@@ -76,7 +76,7 @@ _LOG_NUMBERS = {10.0: (1, 2, 3, 5, 7), 300.0: (1, 2, 5)}  # by the ratio of a lo
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """The style for what is drawn within, whatever the caller's own settings are."""
+    """Context in which figures are drawn in this style, whatever the caller's own Matplotlib settings."""
     with mpl.rc_context():
         mpl.rcdefaults()
         mpl.rcParams.update(STYLE)
@@ -84,11 +84,11 @@ def styled() -> Iterator[None]:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure [inch] that belongs to no window and lays its parts out by itself.
+    """An empty figure that belongs to no window and lays out its parts automatically.
 
     Args:
-        width: [inch].
-        height: [inch].
+        width: Width of the figure [inch].
+        height: Height of the figure [inch].
     """
     figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH)
     figure.set_layout_engine("constrained", wspace=0.05, hspace=0.05)
@@ -100,13 +100,13 @@ def save_figure(figure: Figure, path: Path | str, width: float | None = None) ->
     """Writes a figure in the format of the path's suffix: .svg, .pdf or .png. Returns the path.
 
     Args:
-        figure: What to write.
-        path: Of the file; its folder exists.
-        width: For which it is laid out anew, with letters of the same size [inch]: `COLUMN` and `PAGE` are those of
-            journals. None for that of the figure.
+        figure: The figure to write.
+        path: Path of the file; its folder must exist.
+        width: Width for which the figure is laid out again, with letters of the same size [inch]; `COLUMN` and `PAGE`
+            suit journals. None to keep its width.
 
     Raises:
-        ArgumentError: The suffix is another one, or the width is not above 0.
+        ArgumentError: The suffix is not one of these, or the width is not above 0.
         RecordError: The file cannot be written.
     """
     path = Path(path)
@@ -136,7 +136,7 @@ def png_bytes(figure: Figure) -> bytes:
 
 
 def svg_bytes(figure: Figure) -> bytes:
-    """A figure as SVG with letters as outlines, the same bytes each time and on each machine."""
+    """A figure as SVG with letters as outlines; the bytes are the same each time and on every machine."""
     buffer = io.BytesIO()
     with styled():
         mpl.rcParams["svg.hashsalt"] = "hedon"
@@ -147,7 +147,7 @@ def svg_bytes(figure: Figure) -> bytes:
 
 
 def pdf_bytes(figure: Figure) -> bytes:
-    """A figure as PDF with its fonts embedded as TrueType, which publishers ask for; the same bytes each time."""
+    """A figure as PDF with fonts embedded as TrueType, as publishers require; the bytes are the same each time."""
     from matplotlib.backends.backend_pdf import FigureCanvasPdf  # loads fontTools, which few reports need
 
     buffer = io.BytesIO()
@@ -160,11 +160,11 @@ def pdf_bytes(figure: Figure) -> bytes:
 
 
 FORMATS: dict[str, Callable[[Figure], bytes]] = {"svg": svg_bytes, "pdf": pdf_bytes, "png": png_bytes}
-"""What writes a figure, by the suffix of its file."""
+"""Functions that write a figure, by the suffix of the file."""
 
 
 def _lay_out(figure: Figure) -> None:
-    """Lays the parts of a figure out once, for all files: it takes as long as to draw them."""
+    """Lays out the parts of a figure once for all files, since this takes as long as drawing them."""
     engine = figure.get_layout_engine()
     if engine is not None:
         engine.execute(figure)
@@ -177,7 +177,7 @@ def seed_color(index: int) -> str:
 
 
 def step_unit(last_step: float) -> tuple[float, str]:
-    """A unit of time in which the numbers of an axis are short: its size [step] and its name."""
+    """A unit of time that keeps the numbers of an axis short: its size [step] and its name."""
     if last_step >= 2e6:
         return 1e6, "million steps"
     if last_step >= 2e3:
@@ -186,7 +186,7 @@ def step_unit(last_step: float) -> tuple[float, str]:
 
 
 def head(axes: Axes, title: str, remark: str = "") -> None:
-    """Writes a title above axes and, smaller and below it, what else must be known; nothing where both are empty."""
+    """Writes a title above axes with a remark below it in smaller type; nothing if both are empty."""
     lines = remark.count("\n") + 1 if remark else 0
     if title:
         axes.set_title(title, pad=8.0 + 11.0 * lines)
@@ -196,7 +196,7 @@ def head(axes: Axes, title: str, remark: str = "") -> None:
 
 
 def legend_above(axes: Axes, columns: int = 2) -> None:
-    """Adds a legend to axes of the height of a panel, and room for it above all that is drawn."""
+    """Adds a legend to the axes of a panel, with room for it above everything drawn."""
     legend = axes.legend(loc="upper left", ncols=columns, borderaxespad=0.2)
     rows = -(-len(legend.get_texts()) // columns)
     low, high = axes.get_ylim()
@@ -204,7 +204,7 @@ def legend_above(axes: Axes, columns: int = 2) -> None:
 
 
 def wrapped_legend(figure: Figure, handles: Sequence[Artist], columns: int, **options: Any) -> Legend:
-    """Adds a legend to a figure, in as few rows as fit its width."""
+    """Adds a legend to a figure, in as few rows as its width allows."""
     rows = -(-len(handles) // columns)
     while True:
         columns = -(-len(handles) // rows)
@@ -216,7 +216,7 @@ def wrapped_legend(figure: Figure, handles: Sequence[Artist], columns: int, **op
 
 
 def number_log_axis(axis: Axis) -> None:
-    """Writes plain numbers on a logarithmic axis whose limits are set, a few to a decade where there is room."""
+    """Writes plain numbers on a logarithmic axis whose limits are set, a few per decade if there is room."""
     low, high = axis.get_view_interval()
     shown = next((numbers for ratio, numbers in _LOG_NUMBERS.items() if high < ratio * low), (1,))
     axis.set_major_locator(LogLocator(subs=shown))
@@ -225,17 +225,17 @@ def number_log_axis(axis: Axis) -> None:
 
 
 def say_empty(axes: Axes, text: str) -> None:
-    """Writes into the middle of axes why there is nothing to see.
+    """Writes in the middle of empty axes why there is nothing to show.
 
     Args:
-        axes: to write into.
-        text: the reason.
+        axes: Axes to write in.
+        text: The reason.
     """
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=MUTED)
 
 
 def draw_message(text: str) -> Figure:
-    """A figure that says why there is nothing to see."""
+    """A figure that contains only a message, such as why there is nothing to show."""
     with styled():
         figure = new_figure(4.6, 1.4)
         axes = figure.add_subplot()

@@ -1,4 +1,4 @@
-"""How long do agents live, counting those who still live?"""
+"""How long do agents live, counting those still alive?"""
 
 import numpy as np
 import polars as pl
@@ -8,15 +8,15 @@ from matplotlib.lines import Line2D
 from hedon.figure.style import INK, draw_message, new_figure, number_log_axis, seed_color, step_unit, styled
 
 _LEGEND_SEEDS = 10
-_SHOWN_SHARE = 0.01  # of the newborn, below which the long tail of the axes is cut
+_SHOWN_SHARE = 0.01  # share of the newborn still alive at which the axes end
 _MARGIN = 0.04  # of the logarithmic axis, beyond the curves
 
 
 def draw_survival(points: pl.DataFrame, lifetimes: pl.DataFrame) -> Figure:
-    """Survival curves, a color per world, with their intervals; the same on a logarithmic scale beside.
+    """Draws survival curves with their intervals, a color per world, and the same curves on a logarithmic scale.
 
-    On the logarithmic scale a constant chance of death is a straight line, and one that rises with age bends
-    it downward. Dashed: the curve of an agent whose chance of death is that of the whole world at any age.
+    On the logarithmic scale, a constant chance of death is a straight line; if it rises with age, the line bends
+    downward. Dashed: the curve of an agent that has the world's average chance of death at every age.
     """
     if points.is_empty():
         return draw_message("nobody died")

@@ -1,4 +1,4 @@
-"""Lines over time: a thin one per world, a thick one for their mean, a band for its interval."""
+"""Lines over time: a thin line per world, a thick line for their mean, and a band for its interval."""
 
 from collections.abc import Container
 
@@ -24,19 +24,19 @@ def draw_traces(
 ) -> None:
     """Draws one column of a history.
 
-    The thick line is the mean over the worlds that have a value at that time, so extinct worlds leave it;
-    the band is the 95 % interval of the mean, where there are at least five worlds. A cross marks where a
+    The thick line is the mean over the worlds that have a value at that time, so it leaves out extinct worlds;
+    the band is the 95 % interval of the mean, if there are at least five worlds. A cross marks where a
     world died out.
 
     Args:
-        axes: to draw on; its x axis is in the unit of `draw_time_axis`.
-        history: of `population.history`.
-        column: of the history.
-        color: of all lines.
-        label: of the thick line.
-        thin: whether the worlds' own lines and their crosses are drawn.
-        extinct: worlds that died out; where it is not known, those that end before others.
-        end: of the time axis, where it reaches further than the history [step].
+        axes: Axes to draw on; its x axis is in the unit of `draw_time_axis`.
+        history: A history from `population.history`.
+        column: Column of the history to draw.
+        color: Color of all lines.
+        label: Label of the thick line in a legend.
+        thin: Whether to draw the lines of worlds and their crosses.
+        extinct: Worlds that died out; None to assume this of worlds that end before others.
+        end: End of the time axis, if later than that of the history [step].
     """
     unit, _ = step_unit(max(last_step(history), end))
     worlds = history.partition_by("world")
@@ -65,10 +65,10 @@ def draw_traces(
 
 
 def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Mean over worlds at each time.
+    """The mean over worlds at each time.
 
     Returns:
-        Step, mean, and lower and upper bound of its 95 % interval (NaN for fewer than five worlds), each
+        Step, mean, and lower and upper bound of its 95 % interval (NaN for fewer than five worlds), each of shape
         (bins,).
     """
     rows = []
@@ -82,12 +82,12 @@ def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndar
 
 
 def draw_time_axis(axes: Axes, history: pl.DataFrame, end: float = 0.0) -> None:
-    """Labels the x axis in a unit that suits the length of the run, from 0 on to its end or a later one [step].
+    """Labels the x axis in a unit that suits the length of the run, from 0 to the end of the run or later.
 
     Args:
-        axes: to label.
-        history: a row per world and bin of time, with the column step.
-        end: a time that the axis reaches at least [step].
+        axes: Axes to label.
+        history: A row per world and bin of time, with the column step.
+        end: Earliest end of the axis [step].
     """
     last = max(last_step(history), end)
     unit, name = step_unit(last)
@@ -96,12 +96,12 @@ def draw_time_axis(axes: Axes, history: pl.DataFrame, end: float = 0.0) -> None:
 
 
 def draw_zero_line(axes: Axes) -> None:
-    """A line at 0, under the data."""
+    """Draws a line at 0, behind the data."""
     axes.axhline(0, color=PALE, linewidth=1.0, zorder=0.5)
 
 
 def last_step(history: pl.DataFrame) -> float:
-    """The last step of a history [step]; 0 where it is empty."""
+    """The last step of a history [step]; 0 if it is empty."""
     return float(history["step"].to_numpy().max()) if history.height else 0.0
 
 

@@ -1,4 +1,4 @@
-"""How do those who live descend from the founders, and how did a weight change on the way?"""
+"""How do the living descend from the founders, and how did a weight change on the way?"""
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -21,21 +21,23 @@ from hedon.figure.style import (
 )
 
 MOST = 300
-"""Most tips that are drawn; of more, this many are taken, evenly by birth."""
+"""Largest number of tips drawn; if there are more, this many are chosen, evenly by birth."""
 _COLORS = LinearSegmentedColormap.from_list("weight", [BLUE, SKY, PALE, ORANGE, VERMILION])
-"""Gray in the middle, so that lines of weights near 0 can be seen on white."""
-_SHARE = 0.98  # of the agents within the ends of the colors; the few beyond have the color of an end
+"""Gray in the middle, so that lines of weights near 0 are visible on white."""
+_SHARE = 0.98  # of the agents within the range of colors; the few beyond it have the color of its end
 
 
 def draw_tree(tree: Genealogy, weight: NDArray[np.float64], name: str, now: int) -> Figure:
-    """The tree of those who live, colored by a weight: a line for the life of each agent, from its birth to the last
-    birth of an ancestor of a tip, and for tips to the end.
+    """Draws the pedigree of the living, colored by a weight.
+
+    Each agent is a line that starts at its birth. The line of a tip ends at the last step; that of an ancestor ends
+    at the last birth of a child that leads to a tip.
 
     Args:
-        tree: pedigree of one world.
-        weight: of each agent, (agents,).
-        name: genome column of the weight.
-        now: the last step.
+        tree: Pedigree of one world.
+        weight: Weight of each agent, shape (agents,).
+        name: Genome column of the weight, for labels.
+        now: The last step.
     """
     alive = np.flatnonzero(tree.alive)
     if not len(alive):
@@ -70,7 +72,7 @@ def draw_tree(tree: Genealogy, weight: NDArray[np.float64], name: str, now: int)
 def _layout(
     tree: Genealogy, kept: NDArray[np.int64], tips: NDArray[np.int64], now: int
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The height of each agent's line, and the step at which it ends, (agents,) each; of those that are kept."""
+    """The height of each kept agent's line and the step at which it ends, each (agents,)."""
     young: dict[int, list[int]] = {}
     until = np.where(tree.death == ALIVE, now, tree.birth)
     for i in kept.tolist():
@@ -84,13 +86,13 @@ def _layout(
     height = 0
     for root in [i for i in kept.tolist() if tree.parent[i] < 0]:
         stack = [root]
-        while stack:  # those below first, the latest birth nearest to the line
+        while stack:  # from the bottom up: the latest child is drawn nearest to its parent
             agent = stack.pop()
             if is_tip[agent]:
                 place[agent] = height
                 height += 1
             stack += young.get(agent, [])
-    for i in kept[::-1].tolist():  # children come after their parents
+    for i in kept[::-1].tolist():  # children are listed after their parents
         if not is_tip[i]:
-            place[i] = min(place[child] for child in young[i])  # it ends where its last child begins
+            place[i] = min(place[child] for child in young[i])  # its line ends where that of its last child starts
     return place, until

@@ -1,4 +1,4 @@
-"""Where do mutations alone carry weights that nothing selects?"""
+"""Where do mutations alone carry weights that are not under selection?"""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,11 +11,11 @@ from hedon.figure.style import INK, MUTED, PALE, new_figure, seed_color, styled
 from hedon.figure.trace import draw_zero_line
 
 LENGTHS = (100, 1000)
-"""Numbers of mutations after which weights are shown; as in the paper."""
-_LINES = 10_000  # of descent, that shares are counted over
-_TABLES = 1000  # worlds that these belong to, where noise is tabulated
-_EXAMPLES = 8  # lines that are drawn
-_PER_TABLE = 2  # of these in a world, where noise is tabulated
+"""Numbers of mutations after which weights are shown, as in the paper."""
+_LINES = 10_000  # lines of descent in each histogram
+_TABLES = 1000  # worlds that they are spread over, if noise is tabulated
+_EXAMPLES = 8  # lines drawn
+_PER_TABLE = 2  # lines drawn per world, if noise is tabulated
 _BINS = 40
 _CORNER = 0.1  # of the limit: how far a corner reaches along both axes
 
@@ -24,15 +24,15 @@ Floats = NDArray[np.float64]
 
 
 def draw_walks(law: MutationLaw, births: int, rng: np.random.Generator) -> Figure:
-    """A row per number of mutations: examples of lines of descent, and the weights at their end.
+    """Draws a row per number of mutations: examples of lines of descent, and the weights at their ends.
 
-    Shaded: half and 95 % of all lines. At the right, where each birth has a noise of its own, dashed: what the same
-    noise would do without a limit, in closed form, Cauchy noise added to the founders' normal law.
+    Shaded: half and 95 % of all lines. If each birth draws its own noise, the dashed curve at the right shows what the
+    same noise would do without a limit, in closed form: Cauchy noise added to the founders' normal distribution.
 
     Args:
-        law: of founding and mutation.
-        births: in a window; for tabulated noise.
-        rng: source of chance.
+        law: Distributions of founders' genes and of mutations.
+        births: Births per window; used only for tabulated noise.
+        rng: Source of random numbers.
     """
     genes, examples, colors = _sample(law, births, rng)
     with styled():
@@ -51,15 +51,15 @@ def draw_walks(law: MutationLaw, births: int, rng: np.random.Generator) -> Figur
 
 
 def draw_walk_ends(law: MutationLaw, births: int, rng: np.random.Generator) -> Figure:
-    """A panel per number of mutations: two weights of each line, one against the other, as in the paper.
+    """Draws a panel per number of mutations: two weights of each line, one against the other, as in the paper.
 
-    Large mutations carry weights to their limit, so points gather along the edges, and where both weights are there, in
-    the four corners; each corner tells its share of the lines.
+    Large mutations carry weights to their limit, so points gather along the edges and, if both weights reach it, in
+    the four corners. Each corner is labeled with its share of the lines.
 
     Args:
-        law: of founding and mutation.
-        births: in a window; for tabulated noise.
-        rng: source of chance.
+        law: Distributions of founders' genes and of mutations.
+        births: Births per window; used only for tabulated noise.
+        rng: Source of random numbers.
     """
     worlds = _TABLES if law.tabulated else _LINES
     genes = lineages(law, LENGTHS[-1], worlds, _LINES // worlds, rng, births, genes=2)
@@ -72,10 +72,10 @@ def draw_walk_ends(law: MutationLaw, births: int, rng: np.random.Generator) -> F
 
 
 def unlimited_share(law: MutationLaw, length: int, edges: Floats) -> Floats:
-    """What share of lines would end in each bin if nothing were clipped, by the density at its middle.
+    """The share of lines that would end in each bin without clipping, from the density at the center of the bin.
 
     Returns:
-        Shares, (bins,).
+        Shares, shape (bins,).
     """
     middle = 0.5 * (edges[1:] + edges[:-1])
     return voigt_profile(middle - law.mean, law.sd, length * law.scale) * np.diff(edges)
@@ -108,7 +108,7 @@ def _draw_ends(axes: Axes, ends: Genes, law: MutationLaw) -> None:
 
 
 def _sample(law: MutationLaw, births: int, rng: np.random.Generator) -> tuple[Genes, Genes, list[str]]:
-    """All lines, shape (mutations + 1, lines), then those that are drawn and their colors."""
+    """All lines, shape (mutations + 1, lines), the lines to draw, and their colors."""
     worlds, per_world = (_TABLES, _PER_TABLE) if law.tabulated else (_LINES, 1)
     genes = lineages(law, LENGTHS[-1], worlds, _LINES // worlds, rng, births)
     examples = genes[:, :: worlds * per_world // _EXAMPLES, :per_world].reshape(len(genes), -1)

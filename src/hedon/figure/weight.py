@@ -1,4 +1,4 @@
-"""Which combinations of rewards evolved? Weights of agents, one against another, and where drift would have them."""
+"""Which combinations of rewards evolved? Weights of agents against one another, and what drift alone would do."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -30,7 +30,7 @@ from hedon.figure.style import (
 Floats = NDArray[np.float64]
 
 _MIN_HALF_RANGE = 1.0  # of the weight axes
-_SHARE_WITHIN = 0.98  # of the agents, in each weight; the few beyond would squeeze all others
+_SHARE_WITHIN = 0.98  # of the agents, in each weight; room for the rest would squeeze all others
 _MARGIN = 1.3
 _BINS = 60
 _SIDE = 0.225  # width of a distribution beyond the axes, in panels
@@ -41,15 +41,15 @@ _LEGEND_SEEDS = 10  # more would hide the data
 
 @dataclass(frozen=True)
 class WeightGroup:
-    """The agents of one setting, drawn as one or more panels.
+    """The agents of one condition, drawn as one or more panels.
 
     Attributes:
-        agents: those of the table `agents` that are shown; `world` tells colors.
-        panels: genome columns along the x and the y axis of each panel.
-        title: what the setting is called.
-        remark: what else must be known of it.
-        drift: by genome column, what such agents would have of it if it had drifted, as `drift_genes` gives it,
-            (draws,); genes without any are drawn without a control.
+        agents: Rows of the table `agents` to show; `world` decides their colors.
+        panels: Genome columns along the x and the y axis of each panel.
+        title: Name of the condition.
+        remark: Further information shown under the title.
+        drift: By genome column, values that such agents would have under drift alone, as `drift_genes` returns them,
+            shape (draws,); genes without values are drawn without a control.
     """
 
     agents: pl.DataFrame
@@ -60,22 +60,23 @@ class WeightGroup:
 
     @property
     def weights(self) -> list[str]:
-        """The genome columns along any axis."""
+        """The genome columns along the axes."""
         return list(dict.fromkeys(name for panel in self.panels for name in panel))
 
 
 def against_action(reward_names: Sequence[str]) -> list[tuple[str, str]]:
-    """A panel per other weight: along the x axis; that of action along the y axis."""
+    """A panel per weight except that of action: the weight along the x axis, action along the y axis."""
     return [(name, "w_action") for name in reward_names if name != "w_action"]
 
 
 def draw_weights(agents: pl.DataFrame, reward_names: Sequence[str], drift: Mapping[str, Floats]) -> Figure:
-    """The weights of some agents of one setting: each against that of action.
+    """Draws each weight of some agents of one condition against the weight of action.
 
     Args:
-        agents: rows of the table `agents`: those that are shown.
-        reward_names: genome columns that have an effect.
-        drift: by genome column, what such agents would have of it if it had drifted, each (draws,); see `WeightGroup`.
+        agents: Rows of the table `agents` to show.
+        reward_names: Genome columns that have an effect.
+        drift: By genome column, values that such agents would have under drift alone, each of shape (draws,); see
+            `WeightGroup`.
     """
     panels = against_action(reward_names)
     if not panels:
@@ -84,19 +85,19 @@ def draw_weights(agents: pl.DataFrame, reward_names: Sequence[str], drift: Mappi
 
 
 def draw_weight_groups(groups: Sequence[WeightGroup]) -> Figure:
-    """The panels of each setting side by side, a point per agent.
+    """Draws the panels of each condition side by side, with a point per agent.
 
-    Colors tell worlds apart, or the time of birth where there is one world in all. The curves beyond the axes are
-    the distributions over all agents; outlined in gray, what drift alone would make of the weight.
-    All panels have the same axes, which reach as far as nearly all agents of each setting; crosses at their edge
-    stand for those beyond.
+    Colors distinguish worlds, or show the time of birth if there is only one world. The histograms outside the axes are
+    the distributions over all agents; the gray outlines show the distributions under drift alone.
+    All panels have the same axes, which include nearly all agents of each condition; crosses at the edge
+    mark the agents beyond.
 
     Args:
-        groups: from left to right, at least one.
+        groups: The conditions from left to right, at least one.
     """
     reach = max(_reach(group) for group in groups)
     panels = sum(len(group.panels) for group in groups)
-    columns = panels + _SIDE * len(groups)  # panels and the distributions beside them, in panels
+    columns = panels + _SIDE * len(groups)  # width of the panels and of the distributions next to them, in panels
     size = min(3.3, (_WIDEST - 0.6) / columns)  # of a panel [inch]
     lines = max((1 + group.remark.count("\n") + bool(group.remark) for group in groups if group.title), default=0)
     with styled():
@@ -147,7 +148,7 @@ def _scatter(figure: Figure, axes: Axes, group: WeightGroup, panel: tuple[str, s
     rows = group.agents
     for draw in (axes.axhline, axes.axvline):
         draw(0, color=PALE, linewidth=1.0, zorder=0.5)
-    # Worlds in random order, so that the last does not cover the others.
+    # Points are drawn in random order, so that the last world does not cover the others.
     order = np.random.default_rng(0).permutation(rows.height)
     x, y = (rows[name].to_numpy()[order] for name in panel)
     size = float(np.clip(6e4 / max(rows.height, 1), 3.0, 14.0))
@@ -167,7 +168,7 @@ def _scatter(figure: Figure, axes: Axes, group: WeightGroup, panel: tuple[str, s
 
 
 def _edge_marks(axes: Axes, rows: pl.DataFrame, panel: tuple[str, str], reach: float) -> None:
-    """Crosses at the edge of the axes for the agents that lie beyond it."""
+    """Crosses at the edge of the axes for the agents beyond it."""
     rows = rows.filter(_is_beyond(panel, reach))
     x, y = (np.clip(rows[column].to_numpy(), -reach, reach) for column in panel)
     axes.scatter(x, y, marker="x", s=9, linewidths=0.7, color=MUTED, alpha=0.7, clip_on=False, zorder=3)
@@ -204,7 +205,7 @@ def _legend(figure: Figure, groups: Sequence[WeightGroup], reach: float) -> None
 
 
 def _drift_handle(groups: Sequence[WeightGroup], reach: float) -> Artist:
-    """Names the outline of drift, with how much of it the axes cut off, and the weights that have none."""
+    """Legend entry for the outline of drift: its share beyond the axes, and the weights that have no outline."""
     drifted = [group.drift[name] for group in groups for name in group.weights if name in group.drift]
     absent = list(dict.fromkeys(name for group in groups for name in group.weights if name not in group.drift))
     outside = float((np.abs(np.concatenate(drifted)) > reach).mean()) if drifted else 0.0
@@ -215,12 +216,12 @@ def _drift_handle(groups: Sequence[WeightGroup], reach: float) -> Artist:
 
 
 def _is_beyond(names: Sequence[str], reach: float) -> pl.Expr:
-    """Whether any of these weights of an agent lies beyond the axes."""
+    """Whether any of these weights of an agent is beyond the axes."""
     return pl.any_horizontal(pl.col(*names).abs() > reach)
 
 
 def _reach(group: WeightGroup) -> float:
-    """Half the range of the axes: room for nearly all agents, and no more."""
+    """Half the range of the axes, just large enough for nearly all agents."""
     if group.agents.is_empty():
         return _MIN_HALF_RANGE
     weights = np.abs(group.agents.select(group.weights).to_numpy())

@@ -16,12 +16,12 @@ from hedon.figure.style import INK, MUTED, PALE, new_figure, styled, wrapped_leg
 from hedon.record.snapshot import Snapshot
 
 AGENT_COLOR = "#bed3e6"
-"""Color of agents where no color stands for their energy."""
+"""Color of agents if colors do not show their energy."""
 _FLOOR = "#fbfbf8"
 _WALL = "#3b4854"
-_NEAR = 0.85  # reading of a ray above which what it sees hides the view
-_LEGEND_COLUMNS = 5  # of one row, at most
-_LEGEND_HEIGHT = 0.4  # of two rows, for which a figure has room [inch]
+_NEAR = 0.85  # reading of a ray above which an object blocks the view
+_LEGEND_COLUMNS = 5  # at most, in one row
+_LEGEND_HEIGHT = 0.4  # of two rows, which the figure leaves room for [inch]
 _WIDTH = 7.2  # of the figure [inch]
 _ENERGY_COLORS = LinearSegmentedColormap.from_list("energy", ["#f1f4f7", "#bed3e6", "#7fb0d6", "#4189c4", "#1f68a8"])
 
@@ -30,9 +30,9 @@ def draw_world(snapshot: Snapshot, colors: Mapping[str, str], rays_of: Sequence[
     """Draws the arena, its foods and its agents with heading, mouth and energy, and the rays of some agents.
 
     Args:
-        snapshot: the state.
-        colors: per food kind.
-        rays_of: indices of agents in the snapshot whose rays are drawn up to what they hit.
+        snapshot: State of the world.
+        colors: Color of each food kind.
+        rays_of: Indices of agents in the snapshot whose rays are drawn, each up to the object that it hits.
     """
     low = snapshot.walls.reshape(-1, 2).min(axis=0)
     high = snapshot.walls.reshape(-1, 2).max(axis=0)
@@ -64,21 +64,21 @@ def draw_world(snapshot: Snapshot, colors: Mapping[str, str], rays_of: Sequence[
 
 
 def telling_agent(snapshot: Snapshot) -> int | None:
-    """Index of the agent whose rays see the most that is not near; None where nobody lives."""
+    """Index of the agent whose rays see most without being blocked by near objects; None if no agent is alive."""
     if len(snapshot.x) == 0:
         return None
     hits = ((snapshot.rays >= 0) & (snapshot.rays < _NEAR)).sum(axis=1)  # (agents, types)
     weights = np.ones(hits.shape[1])
     solid = 2 if len(snapshot.obstacles) else 1
-    weights[1:-solid], weights[-solid] = 2.0, 0.2  # food is what an agent looks for; walls are everywhere
+    weights[1:-solid], weights[-solid] = 2.0, 0.2  # agents look for food, and walls are everywhere
     return int(np.argmax(hits @ weights))
 
 
 def ray_segments(snapshot: Snapshot, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """The rays of one agent, from the surface of its body to what they hit or to their end.
+    """The rays of one agent, from the surface of its body to the object that they hit or to their end.
 
     Returns:
-        Segments [u], shape (rays, 2, 2), and the type hit per ray, shape (rays,), −1 where nothing is hit.
+        Segments [u], shape (rays, 2, 2), and the type of object that each ray hits, shape (rays,); −1 for none.
     """
     own = snapshot.species[index]
     readings = snapshot.rays[index, : snapshot.ray_count[own]]
@@ -98,9 +98,9 @@ def draw_walls(axes: Axes, walls: np.ndarray, linewidth: float = 2.4) -> None:
     """Draws walls, and the floor that they enclose.
 
     Args:
-        axes: to draw on.
-        walls: ends x1, y1, x2, y2 of each [u], shape (w, 4).
-        linewidth: [pt].
+        axes: Axes to draw on.
+        walls: End points x1, y1, x2, y2 of each wall [u], shape (w, 4).
+        linewidth: Width of the walls [pt].
     """
     outline = wall_outline(walls)
     if outline is not None:
@@ -113,8 +113,8 @@ def draw_obstacles(axes: Axes, obstacles: np.ndarray) -> None:
     """Draws obstacles as solid polygons.
 
     Args:
-        axes: to draw on.
-        obstacles: places of the corners [u], shape (o, corners, 2).
+        axes: Axes to draw on.
+        obstacles: Corners of each obstacle [u], shape (o, corners, 2).
     """
     polygons = [Polygon(corners, closed=True) for corners in obstacles]
     axes.add_collection(PatchCollection(polygons, facecolor=OBSTACLE_COLOR, edgecolor=_WALL, linewidth=0.8, zorder=2))
@@ -124,9 +124,9 @@ def draw_foods(axes: Axes, snapshot: Snapshot, colors: Mapping[str, str]) -> Non
     """Draws the foods as discs, each in its kind's color.
 
     Args:
-        axes: to draw on.
-        snapshot: with the foods.
-        colors: of each food kind.
+        axes: Axes to draw on.
+        snapshot: State of the world with its foods.
+        colors: Color of each food kind.
     """
     places = np.stack([snapshot.food_x, snapshot.food_y], axis=-1)
     for i, kind in enumerate(snapshot.food_kinds):
@@ -138,15 +138,15 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
     """Draws the agents as discs with mouth and heading.
 
     Args:
-        axes: to draw on.
-        snapshot: the state; somebody lives.
-        top: energy from which on the color is the darkest; None where all have the same color.
+        axes: Axes to draw on.
+        snapshot: State of the world, with at least one agent.
+        top: Energy at and above which the color is the darkest; None to draw all agents in the same color.
 
     Returns:
         The discs.
 
     Raises:
-        ValueError: Nobody lives.
+        ValueError: No agent is alive.
     """
     centers = np.stack([snapshot.x, snapshot.y], axis=-1)
     discs, radius, spread = None, snapshot.of_agents("radius"), snapshot.of_agents("mouth_spread")
@@ -181,7 +181,7 @@ def draw_ring(axes: Axes, snapshot: Snapshot, index: int) -> None:
 
 
 def _top_energy(energy: np.ndarray) -> float:
-    """The energy that is drawn darkest: few agents have more; a newcomer's 40 stays in sight in poor worlds."""
+    """The energy drawn darkest: few agents have more, and at least 40, so that founders differ in poor worlds."""
     return max(float(np.quantile(energy, 0.95)), 40.0)
 
 
