@@ -1,4 +1,4 @@
-"""Measures: every number of a world, under one name wherever it is shown."""
+"""Measures: the numbers of a world, each with one name wherever it appears."""
 
 from lazy_loader import attach_stub
 

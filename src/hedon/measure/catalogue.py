@@ -1,6 +1,6 @@
-"""The catalogue of measures: summaries, tables, comparisons, claims and plots take their numbers from it.
+"""The catalogue of measures, from which summaries, tables, comparisons, claims and plots take their numbers.
 
-A measure added here appears in all of them. Measures of genes are made for each gene.
+A measure added here appears in all of them. Measures of genes are created for each gene.
 """
 
 from collections.abc import Callable, Mapping
@@ -17,7 +17,7 @@ from hedon.measure.measure import Measure
 from hedon.statistic.interval import AMOUNT, SHARE
 
 _GENES = ("w_", "neutral_")
-"""How the columns of genes begin."""
+"""Prefixes of the columns of genes."""
 
 
 def _has(column: str) -> Callable[[WorldRecord], bool]:
@@ -190,7 +190,7 @@ MEASURES: Mapping[str, Measure] = {
 
 
 def gene_mean(gene: str) -> Measure:
-    """The mean of a gene among the living at the end, or among the last to live."""
+    """The mean of a gene over the agents alive at the end, or over the last ones alive in an extinct world."""
     title, usual = f"mean of {gene}", gene.startswith("w_")
 
     def of(world: WorldRecord) -> float | None:
@@ -200,7 +200,7 @@ def gene_mean(gene: str) -> Measure:
 
 
 def last_born_mean(gene: str) -> Measure:
-    """The mean of a gene among the 5000 agents born last, which is what the paper shows."""
+    """The mean of a gene over the 5000 agents born last, which the paper shows."""
 
     def of(world: WorldRecord) -> float | None:
         return last_mean(gene, world) if gene in world.weight_names else None
@@ -209,13 +209,14 @@ def last_born_mean(gene: str) -> Measure:
 
 
 def column_measure(column: str, titles: Mapping[str, str] | None = None) -> Measure | None:
-    """The measure that a column of a table holds; None if it holds something else.
+    """The measure in a column of a table; None if the column contains something else.
 
-    Where worlds have several species, "prey.alive_mean" is a measure of the species prey, and its title says so.
+    For worlds with several species, "prey.alive_mean" is a measure of the species prey, and its title includes the
+    species.
 
     Args:
-        column: its name.
-        titles: of measures that configs add, by name.
+        column: Name of the column.
+        titles: Titles of the measures that configs add, by name.
     """
     species, _, name = column.rpartition(".")
     found = MEASURES.get(name)

@@ -1,4 +1,4 @@
-"""What a measure is: one number of a world, or of one species in it, with the same name wherever it appears."""
+"""Defines a measure: one number of a world, or of one species in it, with the same name wherever it appears."""
 
 import math
 from collections.abc import Callable
@@ -18,15 +18,15 @@ class Measure:
     Attributes:
         name: Its key in summaries and its column in tables.
         title: Its label in figures and tables, with the unit.
-        of: Computes the number of a world; None if the world has none.
-        within: The smallest and the largest value that its mean over worlds can have.
-        meaning: What the documentation of files says about it, if that is more than the title.
-        ratio: Whether worlds are compared by the logarithm, so that effects are ratios.
+        of: Computes the number for a world; returns None if the world has no value.
+        within: Smallest and largest value that its mean over worlds can have.
+        meaning: Its description in the documentation of files, if longer than the title.
+        ratio: Whether worlds are compared on a logarithmic scale, so that effects are ratios.
         binary: Whether it is true or false, so that its mean is a share.
         usual: Whether comparisons show it by default.
         averaged: Whether summaries contain its mean over worlds.
-        condition: Tells whether a world can have the number at all, as only worlds with predators have prey; None if
-            all worlds can.
+        condition: Tests whether a world can have the number at all; for example, only worlds with predators have prey.
+            None if all worlds can.
     """
 
     name: str
@@ -42,7 +42,7 @@ class Measure:
 
     @property
     def documentation(self) -> str:
-        """The meaning, or the title if it says everything."""
+        """The meaning, or the title if there is no longer description."""
         return self.meaning or self.title
 
     def applies(self, world: WorldRecord) -> bool:
@@ -50,14 +50,14 @@ class Measure:
         return self.condition is None or self.condition(world)
 
     def value(self, world: WorldRecord) -> float | None:
-        """The number of a world; None if it has none or, for a ratio, if it is not above 0."""
+        """The number of a world; None if it has no value or, for a ratio, if the value is not above 0."""
         found = self.of(world)
         return None if found is None or not math.isfinite(found) or (self.ratio and found <= 0) else float(found)
 
     def scaled(self, value: float) -> float:
-        """A number on the scale on which worlds are compared."""
+        """Converts a number to the scale on which worlds are compared."""
         return math.log(value) if self.ratio else value
 
     def unscaled(self, value: float | None) -> float | None:
-        """A number back from that scale; a difference of logarithms becomes a ratio."""
+        """Converts a number back from that scale; a difference of logarithms becomes a ratio."""
         return math.exp(value) if self.ratio and value is not None else value

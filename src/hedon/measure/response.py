@@ -1,4 +1,4 @@
-"""What studies measure in each world, and the age up to which the lifetimes of several worlds can be compared."""
+"""The measures that studies take of each world, and the age up to which lifetimes of several worlds are comparable."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -13,16 +13,16 @@ from hedon.statistic.interval import AMOUNT
 from hedon.statistic.survival import SurvivalCurve, restricted_mean, survival_curve
 
 _NEGLIGIBLE = 0.01
-"""Share of a mean lifetime that may lie beyond the age up to which a curve is trusted."""
+"""Share of a mean lifetime that may come from ages beyond the one up to which a curve is trusted."""
 RESTRICTED = "restricted_lifetime"
 """The measure that depends on the worlds it is compared with; see `common_age`."""
 
 
 def restricted_lifetime(until: float) -> Measure:
-    """The mean of min(lifetime, an age), with the living as censored.
+    """The mean of min(lifetime, age limit), with the living treated as censored.
 
     Args:
-        until: The age [step]; at 0 no world has the number.
+        until: The age limit [step]; at 0 no world has a value.
     """
 
     def of(world: WorldRecord) -> float | None:
@@ -57,37 +57,37 @@ RESPONSES: tuple[Measure, ...] = (
     MEASURES["mean_energy"],
     MEASURES["extinct"],
 )
-"""What studies measure in a baseline world; `at_common_age` sets the age of the restricted lifetime."""
+"""The measures that studies take of a baseline world; `at_common_age` sets the age limit of the restricted lifetime."""
 
 
 def at_common_age(measures: Iterable[Measure], until: float) -> list[Measure]:
-    """The same measures, with restricted lifetimes up to this age.
+    """The same measures, with restricted lifetimes taken up to the given age.
 
     Args:
         measures: Any measures.
-        until: The age [step].
+        until: The age limit [step].
     """
     return [restricted_lifetime(until) if each.name == RESTRICTED else each for each in measures]
 
 
 def common_age(worlds: Iterable[WorldRecord]) -> float:
-    """The age up to which the lifetimes of all of some worlds can be averaged [step]; 0 where there is none.
+    """The age up to which lifetimes can be averaged in every one of these worlds [step]; 0 if there is no such age.
 
-    A curve is trusted up to the age that 20 agents reached. The common age is the largest of these at which no curve
-    would have to be read further than it is trusted, but for survivors too few to move its mean by a
-    hundredth. In an extinct world no life is censored, so its curve can be read at any age.
+    A survival curve is trusted up to the age that 20 agents reached. The common age is the largest of these ages that
+    requires no curve beyond its trusted age, except for survivors too few to change its mean by a
+    hundredth. In an extinct world no lifetime is censored, so its curve can be read at any age.
     """
     worlds = list(worlds)
     curves = [survival_curve(*durations(w.born, w.last_step)) for w in worlds if w.extinct_step is None]
     trusted = {curve.trusted_age(): curve for curve in curves if curve.trusted_age() > 0}
-    if not trusted:  # every world died out, or nobody did
+    if not trusted:  # every world died out, or no agent died
         gone = [survival_curve(*durations(w.born, w.last_step)).trusted_age() for w in worlds]
         return max(gone, default=0.0)
     return max((age for age in trusted if all(_readable(c, a, age) for a, c in trusted.items())), default=0.0)
 
 
 def _readable(curve: SurvivalCurve, trusted: float, until: float) -> bool:
-    """Whether a curve's mean up to an age needs nothing beyond the age up to which it is trusted."""
+    """Whether a curve's mean up to an age can be computed without reading it beyond its trusted age."""
     if until <= trusted:
         return True
     left = float(curve.share[np.searchsorted(curve.age, trusted)])

@@ -1,7 +1,7 @@
-"""What came out of a run, in one dictionary: the numbers of `summary.json`.
+"""The results of a run in one dictionary: the numbers of `summary.json`.
 
-Numbers of agents are those of one species. Where a run has several, each has its own, under `species`, and what is
-summed over all of them is called a total.
+Numbers about agents refer to one species. If a run has several, each has its own numbers, under `species`; sums over
+all species are called totals.
 """
 
 import math
@@ -24,16 +24,16 @@ from hedon.statistic.interval import AMOUNT, mean_interval
 _COUNTS = ("births", "deaths", "births_failed_full", "births_failed_space")
 
 Fare = Mapping[str, Any]
-"""How one species fares in a world."""
+"""The numbers of one species in a world."""
 
 
 def summarize(run: Run) -> dict[str, Any]:
-    """Computes the summary of a run, also of one that goes on.
+    """Computes the summary of a run, which may still be in progress.
 
-    Damaged parts are left out and named under "damaged_parts".
+    Damaged parts are left out and listed under "damaged_parts".
 
     Returns:
-        Only plain values that JSON knows, None for what has no value. The keys are described in
+        A dictionary of plain JSON values, with None for missing values. The keys are described in
         `summary_key`.
 
     Raises:
@@ -68,7 +68,7 @@ def summarize(run: Run) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON knows it: NumPy and tuples become plain, numbers that are not finite become None."""
+    """Converts a value for JSON: NumPy values and tuples become plain ones, and non-finite numbers become None."""
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, Sequence) and not isinstance(value, str):
@@ -85,7 +85,7 @@ def _indices(run: Run) -> range:
 
 
 def _several(records: Sequence[WorldRecord], worlds: Sequence[Fare], means: Mapping[str, Fare]) -> dict[str, Any]:
-    """What the summary of several species has in place of the means of one."""
+    """The part of a summary that replaces the means if there are several species."""
     alive = mean_interval((world["total"]["alive_mean"] for world in worlds), within=AMOUNT)
     return {
         "extinct_worlds": sum(world["extinct"] for world in worlds),

@@ -1,4 +1,4 @@
-"""What the keys of `summary.json` mean: the single source of its documentation."""
+"""The meaning of the keys of `summary.json`: the single source of its documentation."""
 
 from hedon.measure.catalogue import MEASURES
 
@@ -19,7 +19,7 @@ _BEGIN: dict[str, str] = {
 
 
 def _averaged(*, everywhere: bool) -> dict[str, str]:
-    """The means over worlds, by name: of measures that all worlds have, or of the others."""
+    """Keys of the means over worlds: of the measures that all worlds have, or of the other measures."""
     averaged = [each.name for each in MEASURES.values() if each.averaged and (each.condition is None) == everywhere]
     return {name: f"worlds' `{name}`, mean and interval" for name in averaged}
 
@@ -57,7 +57,7 @@ SEVERAL_KEYS: dict[str, str] = {
 """Keys of a run with several species."""
 
 HUNT_KEYS: dict[str, str] = _averaged(everywhere=False)
-"""Beside `MEAN_KEYS` where agents eat agents."""
+"""Keys in addition to `MEAN_KEYS` if agents eat agents."""
 
 INTERVAL_KEYS: dict[str, str] = {
     "mean": "over the worlds that have a value, or null",
@@ -80,7 +80,7 @@ FARE_KEYS: dict[str, str] = {
     "residual, the largest gap in an interval, only rounding where the ledger closes; where agents eat agents also "
     "hunted, gained by that, and with obstacles damage, charged for touching them",
 }
-"""How one species fares in a world."""
+"""The numbers of one species in a world."""
 
 WORLD_KEYS: dict[str, str] = _WORLD | FARE_KEYS
 """Keys of a world with one species."""
@@ -96,9 +96,9 @@ WORLD_SEVERAL_KEYS: dict[str, str] = {
 """Keys of a world with several species."""
 
 CAUSE_KEYS: dict[str, str] = {each.name: each.documentation for each in MEASURES.values() if each.condition is not None}
-"""Beside `FARE_KEYS` where agents die of more than age and energy."""
+"""Keys in addition to `FARE_KEYS` if agents die of more than age and energy."""
 
 RESERVED = frozenset().union(
     RUN_KEYS, SEVERAL_KEYS, HUNT_KEYS, WORLD_KEYS, WORLD_SEVERAL_KEYS, CAUSE_KEYS, ("condition", "digest", "repetition")
 )
-"""Names that no measure of a config can have, since they are keys or columns already."""
+"""Names that a measure of a config cannot have, since they are already keys or columns."""

@@ -1,4 +1,4 @@
-"""The measures of a world: those of the catalogue, and those that its config adds by `[measure.NAME]`."""
+"""The measures of a world: the catalogue, and those that its config adds with `[measure.NAME]`."""
 
 import math
 import re
@@ -20,16 +20,16 @@ from hedon.record.schema import Columns, columns_of, run_tables
 
 
 def measures_of(config: Config) -> Mapping[str, Measure]:
-    """All measures that worlds of a config have, except those of genes: hedon's, then its own.
+    """All measures of the worlds of a config, except those of genes: hedon's first, then the config's own.
 
     Raises:
-        ConfigError: An expression cannot be used, or a name is taken; the error lists all problems.
+        ConfigError: An expression is invalid, or a name is taken; the error lists all problems.
     """
     return {**MEASURES, **own_measures(config)} if config.measure else MEASURES
 
 
 def own_measures(config: Config) -> dict[str, Measure]:
-    """The measures that a config adds, by name. Raises as `measures_of`."""
+    """The measures that a config adds, by name. Raises the same errors as `measures_of`."""
     columns, made, problems = columns_of(config), {}, []
     for name, each in config.measure.items():
         problem = _name_problem(name, columns) or _expression_problem(name, each, columns)
@@ -43,12 +43,12 @@ def own_measures(config: Config) -> dict[str, Measure]:
 
 
 def titles_of(configs: Iterable[Config]) -> dict[str, str]:
-    """The titles of the measures that some configs add, by name."""
+    """The titles of the measures that these configs add, by name."""
     return {name: each.title or name for config in configs for name, each in config.measure.items()}
 
 
 def own_measure(name: str) -> Measure:
-    """A measure by the name that it has in configs, for claims; a world whose config lacks it has no value."""
+    """A config's own measure by its name, for claims; a world whose config lacks it has no value."""
 
     def of(world: WorldRecord) -> float | None:
         each = world.config.measure.get(name)
@@ -65,7 +65,7 @@ def _value(each: MeasureConfig, world: WorldRecord) -> float | None:
     table = world.population if each.table == "population" else world.agents
     try:
         value = table.select(_expression(each.of)).item()
-    except PolarsError:  # its species lacks a column that others have
+    except PolarsError:  # this species lacks a column that other species have
         return None
     return None if value is None or not math.isfinite(value) else float(value)
 
@@ -86,7 +86,7 @@ def _name_problem(name: str, columns: Columns) -> Problem | None:
 
 
 def _expression_problem(name: str, each: MeasureConfig, columns: Columns) -> Problem | None:
-    """What is wrong with an expression: it is tried on the empty table of a run."""
+    """The problem with an expression, if any, found by evaluating it on an empty table of a run."""
     place, value = f"measure.{name}.of", format_value(each.of)
     schema = run_tables(columns)[each.table].polars_schema
     if not each.of.strip():
@@ -106,14 +106,14 @@ def _expression_problem(name: str, each: MeasureConfig, columns: Columns) -> Pro
 
 
 def world_row(records: Sequence[WorldRecord]) -> dict[str, Any]:
-    """Every measure of one world: a row of a table of worlds.
+    """Every measure of one world, as a row of a table of worlds.
 
     Args:
         records: The records of the world, one per species.
 
     Returns:
-        The seed, whether the world is extinct, and each measure under its name. If there are several species, names of
-        measures begin with the species, as in "prey.alive_mean", and an extinct world is one without any species.
+        The seed, whether the world is extinct, and each measure under its name. With several species, names of
+        measures start with the species, as in "prey.alive_mean", and a world is extinct if all species are.
     """
     row: dict[str, Any] = {"seed": records[0].seed, "extinct": all(each.extinct_step is not None for each in records)}
     for record in records:
