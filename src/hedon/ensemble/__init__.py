@@ -1,1 +1,1 @@
-"""Many worlds: which are needed, which exist, and how the rest is run, on one machine or on many."""
+"""Many worlds: which are needed, which exist, and how to run the rest on one machine or several."""

@@ -1,8 +1,8 @@
-"""Makes one batch: its run, its rows of the table, and what is kept of it.
+"""Runs one batch of a sweep, and writes its rows of the table and the records to keep.
 
-A batch that is done is known by its result, which is written last. A run lives in the sweep's folder, or, for a sweep
-behind a URL, in a passing one, and its state travels at each checkpoint: the process that
-makes the batch next continues there.
+The result is written last and marks the batch as done. The run is in the sweep's folder or, if the sweep is behind a
+URL, in a temporary one. In that case each checkpoint is also sent to the store, so that another process can continue
+the batch there.
 """
 
 import io
@@ -33,22 +33,22 @@ from hedon.record.reader import Run, open_run
 RESULTS, STATE, WORK, TABLES, RUNS = "results", "state", "work", "tables", "runs"
 _LOOK_SECONDS = 0.2
 _ORPHAN_SECONDS = 120.0
-"""How long a batch waits for its folder [s]."""
+"""How long a batch waits for another process to release its folder [s]."""
 
 
 @dataclass(frozen=True)
 class BatchJob:
-    """A batch to make: what a process needs to know of a sweep, however large the sweep is.
+    """A batch to run: what a process must know of a sweep. Its size does not depend on the size of the sweep.
 
     Attributes:
-        location: of the sweep.
-        batch: what to make.
-        condition: its config.
-        changed: what the condition changes in its base, by complete paths.
-        steps: of each world [step].
-        keep: what is kept beside the table.
-        folder: for its run.
-        checkpoint_seconds: between two checkpoints [s].
+        location: Path or URL of the sweep's store.
+        batch: The batch to run.
+        condition: The condition of its worlds.
+        changed: Settings that the condition changes in its base, by complete path.
+        steps: Length of each world [step].
+        keep: Which records to keep in addition to the table.
+        folder: Folder for its run.
+        checkpoint_seconds: Time between two checkpoints [s].
     """
 
     location: str
@@ -62,21 +62,21 @@ class BatchJob:
 
     @property
     def threads(self) -> int:
-        """One: what a sweep gains by more processors is more batches at a time."""
+        """Always one: a sweep uses further processors to run more batches at a time."""
         return 1
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """Of its worlds."""
+        """The seeds of its worlds."""
         return self.batch.seeds
 
     @property
     def world_steps(self) -> int:
-        """Steps of its worlds together, if none dies out."""
+        """Steps summed over its worlds, if none dies out [step]."""
         return self.steps * len(self.seeds)
 
     def newest(self) -> str:
-        """The name of the last checkpoint from which the batch would go on; empty where there is none."""
+        """The name of the checkpoint from which the batch would continue; empty if there is none."""
         store = Store(self.location)
         if store.folder is not None:
             return _newest(self.folder)
@@ -87,22 +87,26 @@ class BatchJob:
         return ""
 
     def describe(self) -> str:
-        """The values of its factors, and its seeds."""
+        """The values of its factors and its seeds."""
         return describe(self.condition.settings, self.batch.seeds)
 
     @property
     def label(self) -> str:
-        """Its name in displays: the description, since the folder's name is a digest."""
+        """Its name in displays: the description, since the name of the folder is a digest."""
         return self.describe()
 
     def make(self, threads: int, callback: Callback | None) -> str:
-        """Makes the batch, from where it is, and writes its result.
+        """Starts or continues the batch, and writes its result at the end.
+
+        Args:
+            threads: Threads of the engine.
+            callback: Called with moments of the run, if not None.
 
         Returns:
-            "finished", or "interrupted".
+            "finished" or "interrupted".
 
         Raises:
-            HedonError: As `hedon.experiment.run.run`, or what is written cannot be.
+            HedonError: The run fails (see `hedon.experiment.run.run`), or its results cannot be written.
         """
         store, batch = Store(self.location), self.batch
         name = f"{RESULTS}/{batch.name}.json"
@@ -130,13 +134,13 @@ class BatchJob:
 
 
 def batch_job(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkpoint_seconds: float) -> BatchJob:
-    """What a process is given to make a batch of a plan; see `BatchJob`.
+    """The job that runs one batch of a plan.
 
     Args:
-        location: Of the sweep's store, as a process in another folder finds it.
-        plan: Of the sweep.
-        batch: To make.
-        folder: Where its run is made.
+        location: Path or URL of the sweep's store, valid from any working folder.
+        plan: Plan of the sweep.
+        batch: The batch to run.
+        folder: Folder for its run.
         checkpoint_seconds: Time between two checkpoints [s]; 0 for one at the end of every window.
     """
     condition = plan.conditions[batch.condition]
@@ -145,7 +149,7 @@ def batch_job(location: str, plan: SweepPlan, batch: Batch, folder: Path, checkp
 
 
 def _make(plan: RunPlan, callback: Callback | None) -> Manifest:
-    """Goes on with the run of a batch; where it was left so damaged that this cannot be, begins again."""
+    """Continues the run of a batch; restarts it if it is too damaged to continue."""
     try:
         return make(plan, () if callback is None else (callback,))
     except RecordError as error:
@@ -164,7 +168,7 @@ def _keep(store: Store, job: BatchJob, run: Run) -> None:
             store.write(f"{TABLES}/{table}/{job.batch.name}.parquet", buffer.getvalue())
     if "run" in job.keep:
         paths = sorted(path for path in job.folder.rglob("*") if path.is_file() and path.name != LOCK)
-        if store.folder is None:  # as one object: an earlier process may have cut its tables at other places
+        if store.folder is None:  # one object, since the parts of an earlier process may have other boundaries
             store.write(f"{RUNS}/{job.batch.name}.zip", _archive(job.folder, paths))
             return
         shutil.rmtree(store.folder / RUNS / job.batch.name, ignore_errors=True)
@@ -173,7 +177,7 @@ def _keep(store: Store, job: BatchJob, run: Run) -> None:
 
 
 class _Carrying:
-    """Sends the state of a run to the store when it has a new checkpoint, and passes moments on."""
+    """Sends the state of a run to the store after each new checkpoint, and forwards moments."""
 
     def __init__(self, store: Store, job: BatchJob, callback: Callback | None) -> None:
         self._store, self._job, self._callback = store, job, callback
@@ -188,13 +192,13 @@ class _Carrying:
 
 
 def _wait_for_folder(folder: Path) -> None:
-    """Waits for the process that had the folder before: that of a sweep that was killed, or of a dead node.
+    """Waits for an earlier process that still uses the folder, after a sweep was killed or a node died.
 
-    It ends soon, since it has nobody to tell how far it is.
+    That process ends soon, since it can no longer report its progress.
 
     Raises:
-        InUseError: it does not.
-        RecordError: the folder cannot be written.
+        InUseError: It does not end in time.
+        RecordError: The folder cannot be written.
     """
     until = time.monotonic() + _ORPHAN_SECONDS
     while folder.exists():
@@ -216,7 +220,7 @@ def _state_name(job: BatchJob) -> str:
 
 
 def _send_state(store: Store, job: BatchJob) -> None:
-    """Sends a run's folder. Checkpoints go first: what later files have more than they say, a resumed run removes."""
+    """Sends a run's folder. The checkpoint goes first: on resuming, later rows in the other files are removed."""
     if store.folder is not None:
         return
     others = sorted(path for path in job.folder.rglob("*") if path.is_file() and not path.name.startswith("."))
@@ -226,7 +230,7 @@ def _send_state(store: Store, job: BatchJob) -> None:
 
 
 def _archive(folder: Path, paths: Sequence[Path]) -> bytes:
-    """Files of a folder, in this order, as the content of a zip file."""
+    """The content of a zip file with files of a folder, in this order."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
         for path in paths:
@@ -235,12 +239,12 @@ def _archive(folder: Path, paths: Sequence[Path]) -> bytes:
 
 
 def _fetch_state(store: Store, job: BatchJob) -> None:
-    """Puts a run's folder where it is made, if it was begun elsewhere and not here."""
+    """Copies the state of a run from the store, if it was started elsewhere and not here."""
     if store.folder is not None or _newest(job.folder):
         return
     content = store.read(_state_name(job))
     if content is not None:
         shutil.rmtree(job.folder, ignore_errors=True)
-        # A state that cannot be read is as none: the batch begins again.
+        # If the state cannot be read, the batch starts again.
         with suppress(zipfile.BadZipFile), zipfile.ZipFile(io.BytesIO(content)) as archive:
             archive.extractall(job.folder)

@@ -1,4 +1,4 @@
-"""Runs a sweep: a process per batch, as many at a time as there are workers, here or on a cluster."""
+"""Lists the unfinished batches of a sweep and makes their jobs; each batch runs in its own process."""
 
 import hashlib
 import tempfile
@@ -13,7 +13,13 @@ from hedon.ensemble.store import Store
 
 
 def open_batches(plan: SweepPlan, store: Store, part: tuple[int, int] = (1, 1)) -> list[Batch]:
-    """The batches without a result, in their order."""
+    """The batches without a result, in order.
+
+    Args:
+        plan: Plan of the sweep.
+        store: Where the sweep is stored.
+        part: Number of a part, from 1, and the number of parts; only batches of this part are returned.
+    """
     return plan.left(done_seeds(store.names(RESULTS)), part)
 
 
@@ -26,24 +32,24 @@ def batch_jobs(
     *,
     on_cluster: bool = False,
 ) -> Iterator[list[BatchJob]]:
-    """The jobs of all batches that have no result, while no other process makes them; one thread each.
+    """The jobs of all batches without a result, one thread each; they are locked within the context (see `lock`).
 
     Args:
-        plan: Of the sweep.
-        store: Where it lives.
-        checkpoint_seconds: Between two checkpoints of a batch [s].
-        part: Which batches, as `open_batches`.
-        on_cluster: Whether other machines make them.
+        plan: Plan of the sweep.
+        store: Where the sweep is stored.
+        checkpoint_seconds: Time between two checkpoints of a batch [s].
+        part: Which batches to include, as for `open_batches`.
+        on_cluster: Whether the jobs run on other machines.
 
     Raises:
-        EnsembleError: Another process makes these batches.
+        EnsembleError: Another process is running these batches.
     """
     with lock(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as passing:
         place, where = Path(passing), store.location
         if store.folder is not None:
             place, where = store.folder.absolute() / WORK, str(store.folder.absolute())
         elif on_cluster:
-            # Of this place alone; a batch's name says its config, steps and seeds.
+            # Unique to this store; the name of a batch contains its config, steps and seeds.
             own = hashlib.sha256(store.location.encode()).hexdigest()[:16]
             place = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{own}"
         batches = open_batches(plan, store, part)

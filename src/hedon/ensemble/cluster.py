@@ -1,6 +1,6 @@
-"""Makes jobs on a Ray cluster: a task for each, begun again on another node when its node dies.
+"""Runs jobs on a Ray cluster, each as a task that is restarted on another node if its node dies.
 
-A task goes on from its job's last checkpoint. It finds that in a folder that all nodes share, or behind a URL.
+A task continues from the last checkpoint of its job, which it finds in a folder that all nodes share, or behind a URL.
 """
 
 import os
@@ -19,22 +19,22 @@ from hedon.experiment.interrupt import count_interrupts
 T = TypeVar("T", bound=Job)
 
 LOCAL = "local"
-"""The address of a cluster that is started on this machine, for these jobs alone."""
+"""The address that starts a cluster on this machine for these jobs only."""
 IN_FLIGHT = 4
-"""Jobs for each processor that Ray is given at a time: it needs memory and time for each that it knows."""
+"""Jobs per processor that are submitted to Ray at a time; more would cost it memory and time."""
 TRIES = 5
-"""How often in a row a job may be begun without getting further. One that writes a checkpoint may be lost again."""
+"""How often in a row a job may be lost without progress. Each new checkpoint resets the count."""
 _LOOK_SECONDS = 0.5
 
 
 @dataclass
 class RetryLimit:
-    """Counts how often each job was lost, with its node or alone, without getting further."""
+    """Counts how often each job's process or node was lost without progress."""
 
     _seen: dict[Path, tuple[str, int]] = field(default_factory=dict)
 
     def may_go_on(self, job: Job) -> bool:
-        """Notes that a job was lost. Whether it is worth another try."""
+        """Records that a job was lost, and returns whether to try it again."""
         place = job.newest()
         before, count = self._seen.get(job.folder, (place, 0))
         count = count + 1 if place == before else 1
@@ -42,7 +42,7 @@ class RetryLimit:
         return count < TRIES
 
     def reason(self, job: Job, error: Exception) -> str:
-        """Why a job is given up: which worlds, what was seen last, and what to do."""
+        """Why a job is abandoned: its worlds, the last error, and what to do."""
         first = str(error).strip().partition("\n")[0]
         return (
             f"its process was lost {TRIES} times in a row without a new checkpoint, the last time with: {first} Its "
@@ -52,18 +52,24 @@ class RetryLimit:
 
 
 def make_on_ray(jobs: Sequence[T], address: str, display: JobListener[T], workers: int = 0) -> dict[Path, Outcome]:
-    """Makes jobs on a cluster; one processor each. Ctrl-C ends it after the current windows.
+    """Runs jobs on a cluster, with one processor for each. Ctrl-C stops them after their current windows.
+
+    Args:
+        jobs: The jobs to run.
+        address: Address of the cluster, or `LOCAL`.
+        display: Listener that is notified when a job ends.
+        workers: Processors of a local cluster; 0 for all.
 
     Returns:
-        How each job ended, by its run's folder; jobs that never began are missing.
+        How each job ended, by the folder of its run; jobs that never started are missing.
 
     Raises:
-        EnsembleError: Ray is not installed, or no cluster is at the address.
+        EnsembleError: Ray is not installed, or there is no cluster at the address.
     """
     ray = import_ray()
     try:
         if address == LOCAL:
-            # A new one, also where another runs. It answers here alone.
+            # A new cluster, even if another is running; it accepts connections from this machine only.
             settings = {"num_cpus": workers or None, "include_dashboard": False, "_node_ip_address": "127.0.0.1"}
             ray.init(address="local", log_to_driver=False, **settings)
         else:
@@ -77,14 +83,14 @@ def make_on_ray(jobs: Sequence[T], address: str, display: JobListener[T], worker
 
 
 def import_ray() -> Any:
-    """Ray, told what is wanted of it; its settings count when it is imported.
+    """Imports Ray with the settings that it reads on import.
 
     Raises:
-        EnsembleError: It is not installed.
+        EnsembleError: Ray is not installed.
     """
-    # It reports to nobody unless asked to.
+    # No usage statistics unless the user asks for them.
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
-    # Each node has its own hedon. Else, under `uv run`, Ray copies the current folder to each node and builds it there.
+    # Nodes have hedon installed. Otherwise, under `uv run`, Ray would copy this folder to each node and build it there.
     os.environ.setdefault("RAY_ENABLE_UV_RUN_RUNTIME_ENV", "0")
     try:
         return import_module("ray")
@@ -93,9 +99,9 @@ def import_ray() -> Any:
 
 
 def _see_through(ray: Any, jobs: Sequence[T], limit: RetryLimit, display: JobListener[T]) -> dict[Path, Outcome]:
-    """Submits jobs and awaits them; those whose process is lost again, as long as that leads further."""
+    """Submits jobs and waits for them; lost jobs are submitted again as long as they make progress."""
     lost = (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError)
-    # Ray's own tries have no end where memory runs out, and do not see whether a job gets further.
+    # Ray's own retries never end if memory runs out, and ignore whether a job makes progress.
     remote = ray.remote(num_cpus=1, max_retries=0)(attempt)
     room = IN_FLIGHT * max(1, int(ray.cluster_resources().get("CPU", 1)))
     left, waiting = iter(jobs), dict[Any, T]()
@@ -112,7 +118,7 @@ def _see_through(ray: Any, jobs: Sequence[T], limit: RetryLimit, display: JobLis
                 try:
                     outcome = ray.get(done)
                 except ray.exceptions.RayError as error:
-                    if interrupted.count:  # it was called off
+                    if interrupted.count:  # the job was canceled
                         continue
                     if isinstance(error, lost) and limit.may_go_on(job):
                         waiting[remote.remote(job, 1)] = job
@@ -122,6 +128,6 @@ def _see_through(ray: Any, jobs: Sequence[T], limit: RetryLimit, display: JobLis
                 display.end(job, outcome)
             if told < interrupted.count:
                 told = interrupted.count
-                for each in waiting:  # those that have not begun are dropped, others get Ctrl-C
+                for each in waiting:  # jobs that have not started are dropped; the others receive Ctrl-C
                     ray.cancel(each, force=told > 1)
     return outcomes

@@ -1,4 +1,4 @@
-"""One table of a sweep, from the results of its batches."""
+"""Combines the results of a sweep's batches into one table."""
 
 import io
 import json
@@ -15,14 +15,14 @@ from hedon.ensemble.row import KEYS
 from hedon.ensemble.store import Store
 
 _AT_ONCE = 1000
-"""Results that are in memory as JSON at a time."""
+"""Number of results held in memory as JSON at a time."""
 
 
 def read_results(plan: SweepPlan, store: Store) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The results of all batches that have worlds of a plan, with the beginnings of their names.
+    """The results of all batches that contain worlds of a plan, each with the prefix of its name.
 
     Raises:
-        EnsembleError: one cannot be read.
+        EnsembleError: A result cannot be read.
     """
     keys, seeds = set(map(plan.key, plan.conditions)), set(plan.seeds)
     names = []
@@ -40,9 +40,10 @@ def read_results(plan: SweepPlan, store: Store) -> Iterator[tuple[str, dict[str,
 
 
 def _sweep_table(plan: SweepPlan, results: Iterable[tuple[str, dict[str, Any]]]) -> pl.DataFrame:
-    """One row per world, by condition and repetition: keys, settings that vary, digest, summary; the extinct too.
+    """One row per world, sorted by condition and repetition, including extinct worlds.
 
-    What a condition does not have, such as a food of another preset, is null.
+    The columns are keys, varied settings, digest and summary; values that a condition lacks, such as a food of another
+    preset, are null.
     """
     frames, rows = [], list[dict[str, Any]]()
     for key, result in results:
@@ -69,7 +70,7 @@ def _sweep_table(plan: SweepPlan, results: Iterable[tuple[str, dict[str, Any]]])
 
 
 def collect(plan: SweepPlan, store: Store) -> pl.DataFrame:
-    """Writes the table `table.parquet` of all worlds so far, and returns it.
+    """Writes the table `table.parquet` of all finished worlds, and returns it.
 
     Raises:
         EnsembleError: A result cannot be read, or the table cannot be written.
@@ -87,7 +88,7 @@ def _frame(rows: list[dict[str, Any]]) -> pl.DataFrame:
 
 
 def _alike(values: list[Any]) -> list[Any]:
-    """Values of one kind: a factor that takes 1 and 0.5 takes 1.0."""
+    """Converts values to one type: if a factor takes 1 and 0.5, the 1 becomes 1.0."""
     kinds = {type(value) for value in values if value is not None}
     if kinds == {int, float}:
         return [None if value is None else float(value) for value in values]
@@ -97,5 +98,5 @@ def _alike(values: list[Any]) -> list[Any]:
 
 
 def table_value(value: Any) -> Any:
-    """A value of a setting as a table holds it: a list as text."""
+    """Converts the value of a setting for a table: lists become text."""
     return value if isinstance(value, str | int | float) else format_value(value)

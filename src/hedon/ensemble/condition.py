@@ -1,4 +1,4 @@
-"""A condition of an ensemble that is planned: a base config, and what the condition changes in it."""
+"""A planned condition: a base config, and the settings that the condition changes in it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,14 +9,19 @@ from hedon.config.problem import format_value
 from hedon.record.manifest import RuleSource
 
 DIGITS = 16
-"""Of a digest that names a config."""
+"""Length of a digest that names a config."""
 
 Settings = dict[str, Any]
-"""A value for each factor, by its name."""
+"""The value of each factor, by name."""
 
 
 def describe(settings: Settings, seeds: Sequence[int]) -> str:
-    """Values of factors and seeds in a few words: "basic_cost=0.002, seed 4"; names are as short as they tell apart."""
+    """Values of factors and seeds as short text: "basic_cost=0.002, seed 4". Names are shortened while still unique.
+
+    Args:
+        settings: Value of each factor.
+        seeds: Seeds of the worlds.
+    """
     words = [
         f"{short}={format_value(value)}" for short, value in zip(_short(list(settings)), settings.values(), strict=True)
     ]
@@ -24,7 +29,7 @@ def describe(settings: Settings, seeds: Sequence[int]) -> str:
 
 
 def seed_text(seeds: Sequence[int]) -> str:
-    """Seeds as part of a name, "1-4.9"; `parse_seeds` reads it with "," for "."."""
+    """Seeds as part of a name, such as "1-4.9"; `parse_seeds` reads it after replacing "." by ","."""
     begins = [i for i in range(len(seeds)) if i == 0 or seeds[i] != seeds[i - 1] + 1]
     ends = [*begins[1:], len(seeds)]
     runs = [(seeds[begin], seeds[end - 1]) for begin, end in zip(begins, ends, strict=True)]
@@ -32,7 +37,7 @@ def seed_text(seeds: Sequence[int]) -> str:
 
 
 def _short(names: Sequence[str]) -> list[str]:
-    """The ends of some paths that tell them apart."""
+    """The shortest endings of some paths that are still unique."""
     for parts in range(1, 9):
         short = [".".join(name.split(".")[-parts:]) for name in names]
         if len(set(short)) == len(names):
@@ -42,13 +47,13 @@ def _short(names: Sequence[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class Base:
-    """A config that conditions begin with.
+    """A config from which conditions are derived.
 
     Attributes:
-        digest: of the config, `DIGITS` of it.
-        config: itself.
-        rules: the texts of its rules.
-        places: the settings that each factor changes in it, by complete paths.
+        digest: Digest of the config, shortened to `DIGITS`.
+        config: The config.
+        rules: Source texts of its rules.
+        places: Complete paths of the settings that each factor changes in it.
     """
 
     digest: str
@@ -59,12 +64,12 @@ class Base:
 
 @dataclass(frozen=True, slots=True)
 class SweepCondition:
-    """A setting of a sweep.
+    """A condition of a sweep.
 
     Attributes:
-        digest: of its config, `DIGITS` of it.
-        base: that of its base.
-        settings: values of the factors, by name.
+        digest: Digest of its config, shortened to `DIGITS`.
+        base: Digest of its base, shortened likewise.
+        settings: Values of the factors, by name.
     """
 
     digest: str
@@ -73,5 +78,10 @@ class SweepCondition:
 
 
 def changes(places: Mapping[str, Sequence[str]], settings: Settings) -> dict[str, Any]:
-    """What a condition changes in its base, by complete paths."""
+    """The settings that a condition changes in its base, by complete path.
+
+    Args:
+        places: Complete paths of the settings that each factor changes.
+        settings: Value of each factor.
+    """
     return {place: settings[name] for name, own in places.items() for place in own}

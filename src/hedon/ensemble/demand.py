@@ -1,4 +1,4 @@
-"""Which worlds are wanted: settings, seeds and steps, all of them or the share of one machine."""
+"""Specifies the worlds that are needed: settings, seeds and steps, for all machines or for one of several."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -16,12 +16,12 @@ from hedon.record.reader import Run
 
 @dataclass(frozen=True)
 class Past:
-    """A world at a checkpoint, from which other worlds go on, each with chances of its own.
+    """A world at a checkpoint, from which other worlds continue, each with its own random numbers.
 
     Attributes:
-        run: folder of the world's run.
-        step: of the checkpoint [step].
-        seed: of the world.
+        run: Folder of the world's run.
+        step: Step of the checkpoint [step].
+        seed: Seed of the world.
     """
 
     run: Path
@@ -31,18 +31,18 @@ class Past:
 
 @dataclass
 class Demand:
-    """A setting that worlds are needed of, by one question or several.
+    """A condition with the worlds of it that are needed.
 
     Attributes:
-        config: the setting.
-        digest: of the config: settings of equal digest share their worlds.
-        steps: of each seed [step].
-        frames: steps between two records of all positions; 0 where nobody needs them.
-        founders: genomes that its worlds begin with; None where they are drawn from the setting's laws.
-        networks: that agents begin with that never learn; None for new ones.
-        rules: texts of the rules that the config is pinned to.
-        name: of the folder of a new run; empty for one that tells the setting from all others.
-        past: that its worlds share; None where each begins at its own beginning.
+        config: Settings of the condition.
+        digest: Digest of the config; conditions with equal digests share their worlds.
+        steps: Steps needed of each seed's world [step].
+        frames: Steps between two records of all positions; 0 if they are not needed [step].
+        founders: Genomes of the founders; None to draw them from the config's distributions.
+        networks: Networks of agents that never learn; None for new ones.
+        rules: Source texts of the rules to which the config is pinned.
+        name: Name of the folder of a new run; empty for a name derived from the settings.
+        past: The past that its worlds share; None if each world starts at step 0.
     """
 
     config: Config
@@ -56,29 +56,29 @@ class Demand:
     past: Past | None = None
 
     def holds(self, manifest: Manifest) -> bool:
-        """Whether the worlds of a run are of this setting and have this past."""
+        """Whether the worlds of a run have these settings and this past."""
         parent, past = manifest.parent, self.past
-        # The name of the old run's folder does not matter: setting, seed and step determine the world.
+        # The name of the parent's folder does not matter: config, seed and step determine the world.
         begun = None if parent is None else (parent.config_digest, parent.step, parent.seed)
         wanted = None if past is None else (self.digest, past.step, past.seed)
         return manifest.config_digest == self.digest and begun == wanted
 
     def has_frames(self, run: Run) -> bool:
-        """Whether a run recorded the positions that are needed."""
+        """Whether a run recorded all positions that are needed."""
         every = run.manifest.frames
         return self.frames == 0 or (every > 0 and self.frames % every == 0)
 
 
 def worlds_of(demands: Sequence[Demand]) -> int:
-    """How many worlds some demands ask for."""
+    """The number of worlds in some demands."""
     return sum(len(demand.steps) for demand in demands)
 
 
 def parse_part(text: str | None) -> tuple[int, int]:
-    """The number of a part, from 1 on, and how many there are, from "3/10"; all of it for None.
+    """Parses a part such as "3/10" into its number, from 1, and the number of parts; None stands for everything.
 
     Raises:
-        EnsembleError: the text is not such a part.
+        EnsembleError: The text is not a part.
     """
     if text is None:
         return 1, 1
@@ -89,9 +89,13 @@ def parse_part(text: str | None) -> tuple[int, int]:
 
 
 def part_of(demands: Sequence[Demand], part: tuple[int, int]) -> list[Demand]:
-    """The share of some worlds that one of several machines makes: every N-th world, from the I-th on.
+    """The worlds of one of several machines: every N-th world, starting with the I-th.
 
-    Folders of named runs have the part's number in their names, so that machines do not meet in one.
+    The part's number is added to the names of named runs, so that machines do not share a folder.
+
+    Args:
+        demands: All worlds that are needed.
+        part: Number I of the part, from 1, and the number N of parts.
     """
     number, count = part
     if count == 1:
@@ -109,6 +113,6 @@ def part_of(demands: Sequence[Demand], part: tuple[int, int]) -> list[Demand]:
 
 
 def setting_name(config: Config) -> str:
-    """What a setting is called: its preset and fidelity, and what it changes; no two settings have one name."""
+    """The unique name of a condition: its preset and fidelity, and the settings that it changes."""
     words = [f"{path} {format_value(new)}" for path, _, new in changed_settings(config)]
     return ", ".join([f"{config.preset} ({config.fidelity})", *words])

@@ -1,6 +1,6 @@
-"""An ensemble: the worlds that are wanted, and the runs of a folder that hold them.
+"""An ensemble: the worlds that are needed, and the runs in a folder that contain them.
 
-A world is identified by the digest of its config and by its seed. Studies and assays find theirs here.
+A world is identified by the digest of its config and by its seed. Studies and assays use this to find their worlds.
 """
 
 import math
@@ -17,18 +17,18 @@ from hedon.record.folder import MANIFEST
 from hedon.record.reader import Run, open_run
 
 ENDED = ("finished", "interrupted")
-"""The states in which a manifest says how far the run came."""
+"""The states in which the manifest records how far the run got."""
 
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
-    """Worlds of one or several settings, as far as a folder holds them.
+    """Worlds of one or more conditions, as far as a folder contains them.
 
     Attributes:
-        demands: which worlds are wanted, one for each setting.
-        folder: that holds the runs, and gets the missing ones.
-        runs: by name, those that hold some of the worlds from their beginning on.
-        faults: what is wrong with folders that hold a run that cannot be read, and may be needed.
+        demands: The worlds that are needed, one demand per condition.
+        folder: Folder of the existing runs, in which missing runs are created.
+        runs: Runs that contain some of the worlds from their start, by name.
+        faults: Problems of folders with an unreadable run that may be needed.
     """
 
     demands: Sequence[Demand]
@@ -38,7 +38,7 @@ class Ensemble:
 
     @property
     def size(self) -> int:
-        """How many worlds are wanted."""
+        """The number of worlds needed."""
         return worlds_of(self.demands)
 
     @cached_property
@@ -48,9 +48,9 @@ class Ensemble:
 
     @cached_property
     def worlds(self) -> dict[tuple[str, int, str], WorldRecord]:
-        """The wanted worlds by their setting's digest, seed and species, as far as their records reach.
+        """The needed worlds by the digest of their config, seed and species, as far as their records reach.
 
-        A world may be longer than it need be. Of two that are equally long, the one of an undamaged run is kept.
+        A world may be longer than needed. If two are equally long, the one from an undamaged run is kept.
         """
         by_digest = {demand.digest: demand for demand in self.demands}
         manifests = {run.path.name: run.manifest for run in self.runs}
@@ -60,7 +60,7 @@ class Ensemble:
             demand = by_digest.get(manifest.config_digest or "")
             if demand is not None and world.seed in demand.steps:
                 known = world if manifest.status in ENDED else world.until(world.recorded_step())
-                # Equal settings can be written in several ways, so the demand names them, not each run.
+                # Equal settings can be written in several ways, so their name comes from the demand, not from each run.
                 species = f": {world.species}" if len(demand.config.species) > 1 else ""
                 kept[demand.digest, world.seed, world.species] = replace(
                     known, condition=setting_name(demand.config) + species
@@ -68,15 +68,15 @@ class Ensemble:
         return kept
 
     def runs_of(self, worlds: Iterable[WorldRecord]) -> tuple[Run, ...]:
-        """The runs that hold some worlds."""
+        """The runs that contain these worlds."""
         names = {world.run for world in worlds}
         return tuple(run for run in self.runs if run.path.name in names)
 
 
 def find_ensemble(demands: Sequence[Demand], folder: Path) -> Ensemble:
-    """Finds the runs in a folder that hold worlds of the settings that are wanted.
+    """Finds the runs in a folder that contain worlds of the demands.
 
-    A run that cannot be read is a fault if it may hold one of them.
+    A run that cannot be read is listed as a fault if it may contain such a world.
     """
     presets = {(demand.config.preset, demand.config.fidelity) for demand in demands}
     runs, faults = [], []
@@ -86,7 +86,7 @@ def find_ensemble(demands: Sequence[Demand], folder: Path) -> Ensemble:
             manifest = run.manifest
             mine = [demand for demand in demands if demand.holds(manifest)]
             is_wanted = any(seed in demand.steps for demand in mine for seed in manifest.seeds)
-            # A config that this version cannot read, as one that lacks a setting, might be one that is wanted.
+            # A config that this version cannot read, such as one that lacks a setting, may belong to a needed world.
             if is_wanted or (manifest.preset, manifest.fidelity) in presets:
                 _ = run.config
             if is_wanted:
@@ -97,7 +97,7 @@ def find_ensemble(demands: Sequence[Demand], folder: Path) -> Ensemble:
 
 
 def steps_reached(run: Run) -> dict[int, float]:
-    """Steps that a run has of each seed's world [step]; infinite if the world died out."""
+    """How far a run got with the world of each seed [step]; infinite if the world died out."""
     manifest = run.manifest
     if manifest.status in ENDED:
         done = [
@@ -105,8 +105,8 @@ def steps_reached(run: Run) -> dict[int, float]:
             for steps, extinct in zip(manifest.steps_done, manifest.extinct_steps, strict=True)
         ]
         return dict(zip(manifest.seeds, done, strict=True))
-    # The manifest of a run that is still running, or was killed, does not say how far it came; its records do.
+    # If a run is in progress or was killed, only its records show how far it got.
     reach: dict[int, float] = {}
-    for world in read_worlds([run]):  # one for each species
+    for world in read_worlds([run]):  # one record per species
         reach[world.seed] = min(reach.get(world.seed, math.inf), world.recorded_step())
     return reach

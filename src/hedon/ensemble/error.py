@@ -1,7 +1,7 @@
-"""The error of ensembles."""
+"""The error that ensembles raise."""
 
 from hedon.error import HedonError
 
 
 class EnsembleError(HedonError):
-    """Worlds that cannot be planned, made or kept: the message says which, where, and what to do."""
+    """Worlds cannot be planned, simulated or stored. The message names them and the place, and gives a remedy."""

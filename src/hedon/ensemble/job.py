@@ -1,4 +1,4 @@
-"""What a job is, and one job in its own process, which reports its progress to the parent process."""
+"""Defines a job, and runs one in its own process, which reports its progress to the parent process."""
 
 import _thread
 import os
@@ -18,9 +18,9 @@ from hedon.experiment.plan import Callback, Moment
 
 
 class Job(Protocol):
-    """Something that makes a run; it can be pickled, and the folder of its run tells it from the others.
+    """A picklable task that makes a run, identified by the folder of the run.
 
-    It continues from its last checkpoint, also from one that another machine wrote.
+    It continues from its last checkpoint, which another machine may have written.
     """
 
     @property
@@ -30,12 +30,12 @@ class Job(Protocol):
 
     @property
     def seeds(self) -> Sequence[int]:
-        """Of its worlds."""
+        """The seeds of its worlds."""
         ...
 
     @property
     def steps(self) -> int:
-        """Of each world in the end [step]."""
+        """The total number of steps of each world [step]."""
         ...
 
     @property
@@ -45,7 +45,7 @@ class Job(Protocol):
 
     @property
     def threads(self) -> int:
-        """Most threads that it can use; the last job of several gets all that are free."""
+        """The number of threads that it should get; the last of several jobs gets all free threads."""
         ...
 
     @property
@@ -54,21 +54,25 @@ class Job(Protocol):
         ...
 
     def newest(self) -> str:
-        """The name of the last checkpoint from which it would go on; empty where there is none."""
+        """The name of the checkpoint from which it would continue; empty if there is none."""
         ...
 
     def describe(self) -> str:
-        """What its worlds are, in a few words."""
+        """A short description of its worlds."""
         ...
 
     def make(self, threads: int, callback: Callback | None) -> str:
-        """Begins, continues, or only reads its run.
+        """Starts, continues, or only reads its run.
+
+        Args:
+            threads: Threads of the engine.
+            callback: Called with moments of the run, if not None.
 
         Returns:
             The status of an `Outcome`.
 
         Raises:
-            HedonError: it fails.
+            HedonError: The run fails.
         """
         ...
 
@@ -78,8 +82,8 @@ class Outcome:
     """How a job ended.
 
     Attributes:
-        status: "finished" or "interrupted", as in the manifest; or "failed".
-        fault: why it failed; empty otherwise.
+        status: "finished" or "interrupted", as in the manifest, or "failed".
+        fault: Why the job failed; empty otherwise.
     """
 
     status: str
@@ -87,7 +91,7 @@ class Outcome:
 
 
 class _Teller:
-    """Sends every moment to the parent; if there is no parent any more, ends the run with all results kept."""
+    """Sends every moment to the parent; if the parent has ended, stops the run and keeps all results."""
 
     def __init__(self, link: Connection) -> None:
         self._link = link
@@ -104,17 +108,22 @@ class _Teller:
 
 
 def work(job: Job, threads: int, link: Connection) -> None:
-    """Does a job, and sends its moments and, at the end, its `Outcome`. Call it in a new process.
+    """Runs a job, and sends its moments and finally its `Outcome`. Call it in a new process.
 
-    The process leaves the terminal: Ctrl-C reaches only the parent, which passes it on by the pipe as soon as the run
-    counts signals. The process starts with signals blocked and unblocks them here, so none ends it directly.
+    The process leaves the terminal, so Ctrl-C reaches only the parent, which forwards it through the pipe once the run
+    counts signals. The process starts with signals blocked and unblocks them here, so no signal ends it directly.
+
+    Args:
+        job: The job to run.
+        threads: Threads of the engine.
+        link: The process's end of the pipe to the parent.
     """
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
     _leave_terminal()
     Thread(target=_listen, args=(link,), daemon=True).start()
     outcome = attempt(job, threads, _Teller(link).update)
-    with suppress(OSError):  # the parent may have ended; what is on disk says it too
+    with suppress(OSError):  # the parent may have ended; the records on disk are complete
         link.send(outcome)
 
 
@@ -129,14 +138,20 @@ def _leave_terminal() -> None:
 
 
 def _listen(link: Connection) -> None:
-    """Does for every number that the parent sends what a signal would, until the parent has ended."""
+    """Treats every number that the parent sends like a signal, until the parent has ended."""
     with suppress(EOFError, OSError):
         while True:
             _thread.interrupt_main(link.recv())
 
 
 def attempt(job: Job, threads: int, callback: Callback | None = None) -> Outcome:
-    """Does a job in this process. A fault of the job is an outcome."""
+    """Runs a job in this process. A failure of the job is returned as an outcome.
+
+    Args:
+        job: The job to run.
+        threads: Threads of the engine.
+        callback: Called with moments of the run, if not None.
+    """
     try:
         return Outcome(job.make(threads, callback))
     except HedonError as error:

@@ -1,4 +1,4 @@
-"""Keeps two processes from making the same jobs in a folder at once."""
+"""Prevents two processes from running the same jobs of a folder at once."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,17 +15,17 @@ LOCKS = "locks"
 
 @contextmanager
 def lock(store: Store, part: tuple[int, int]) -> Iterator[None]:
-    """Locks a part of the jobs of a store while they are made; the lock ends with the process.
+    """Locks a part of the jobs of a store while they are run; the lock ends with the process.
 
-    Two parts have jobs in common where their numbers are equal modulo what their counts have in common, so the
-    third of ten goes with the fourth of ten, and not with the first of two.
+    Two parts share jobs if their numbers are equal modulo the greatest common divisor of their counts. For example,
+    part 3/10 can run at the same time as part 4/10, but not as part 1/2.
 
-    Nothing is locked behind a URL: object stores have no locks that end with a process. There, two that make the same
-    batches write the same rows, so they lose time alone.
+    Nothing is locked behind a URL, since object stores have no locks that end with a process. There, two processes that
+    run the same batches write the same rows, so they only waste time.
 
     Raises:
-        EnsembleError: another process makes jobs of this part.
-        RecordError: the folder cannot be written.
+        EnsembleError: Another process is running jobs of this part.
+        RecordError: The folder cannot be written.
     """
     if store.folder is None:
         yield

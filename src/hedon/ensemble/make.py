@@ -1,4 +1,4 @@
-"""Makes jobs where it is asked: in processes on this machine, or on a Ray cluster."""
+"""Runs jobs in processes on this machine or on a Ray cluster."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,13 +14,19 @@ T = TypeVar("T", bound=Job)
 def make_jobs(
     jobs: Sequence[T], display: JobListener[T], threads: int = 0, ray: str | None = None
 ) -> dict[Path, Outcome]:
-    """Makes jobs, each in a process of its own; those whose runs are begun go on.
+    """Runs jobs, each in its own process; runs that were started before are continued.
+
+    Args:
+        jobs: The jobs to run.
+        display: Listener that is notified of each job's end and, on this machine, of its progress.
+        threads: Threads on this machine, or processors of a local cluster; 0 for all.
+        ray: Address of a Ray cluster; None to run on this machine.
 
     Returns:
-        How each job ended, by its run's folder; jobs that never began are missing.
+        How each job ended, by the folder of its run; jobs that never started are missing.
 
     Raises:
-        EnsembleError: Ray is not installed, or no cluster is at the address.
+        EnsembleError: Ray is not installed, or there is no cluster at the address.
     """
     if ray is None:
         return make_here(jobs, threads or usable_cpus(), display)

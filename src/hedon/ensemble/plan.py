@@ -1,7 +1,7 @@
-"""The plan of a sweep: its conditions and batches, as it is written where the sweep lives.
+"""The plan of a sweep: its conditions and batches, stored with the sweep.
 
-It says what is wanted now. What is done is known by its own name, which has the digest of its config, its steps and its
-seeds: so a plan can grow, and nothing that is done is done again.
+The plan lists what is wanted now. The name of each result contains the digest of its config, its steps and its seeds,
+so a plan can grow without repeating finished work.
 """
 
 import json
@@ -28,10 +28,10 @@ from hedon.record.manifest import RuleSource
 PLAN, TABLE = "plan.json", "table.parquet"
 FORMAT = 2
 LONGEST_SEEDS = 120
-"""Most characters of the seeds in a name."""
+"""Largest number of characters of the seeds in a name."""
 
 Done = Mapping[str, set[int]]
-"""Seeds that are done, by the beginning of the names of a condition's batches."""
+"""Finished seeds, by the prefix of the names of a condition's batches."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +39,9 @@ class Batch:
     """Worlds of one condition that share a process.
 
     Attributes:
-        name: of its files: the config's digest, the steps, and the seeds.
-        condition: index of the condition.
-        seeds: one world for each.
+        name: Stem of its files: the digest of the config, the steps and the seeds.
+        condition: Index of the condition in the plan.
+        seeds: Seeds of its worlds.
     """
 
     name: str
@@ -51,19 +51,19 @@ class Batch:
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """A sweep as it is written.
+    """The stored plan of a sweep.
 
     Attributes:
-        name: of the sweep.
-        steps: of each world [step].
-        seeds: of each condition.
-        rounds: the seeds of its batches, in the order in which conditions take turns.
-        keep: what is kept beside the table.
-        order_seed: of the order within a round.
-        factors: names, in order.
-        ranged: names of those whose values are drawn from ranges.
-        places: by base, the settings that each factor changes in it.
-        conditions: each with its base and values.
+        name: Name of the sweep.
+        steps: Length of each world [step].
+        seeds: Seeds of every condition.
+        rounds: Seeds of the batches in each round; every condition has one batch per round.
+        keep: Which records to keep in addition to the table.
+        order_seed: Seed of the order of conditions within a round.
+        factors: Names of the factors, in order.
+        ranged: Names of the factors whose values are drawn from ranges.
+        places: Settings that each factor changes, by base.
+        conditions: The conditions, each with its base and values.
     """
 
     name: str
@@ -79,23 +79,23 @@ class SweepPlan:
 
     @property
     def worlds(self) -> int:
-        """How many there are."""
+        """The number of worlds."""
         return len(self.seeds) * len(self.conditions)
 
     @property
     def world_steps(self) -> int:
-        """Steps of all worlds together, if none dies out."""
+        """Steps summed over all worlds, if none dies out [step]."""
         return self.steps * self.worlds
 
     def key(self, condition: SweepCondition) -> str:
-        """The beginning of the names of a condition's batches."""
+        """The prefix of the names of a condition's batches."""
         return f"{condition.digest}-{self.steps}"
 
     def batches(self) -> Iterator[Batch]:
-        """All batches in their order: every condition has one before any has the next.
+        """All batches in order of execution: every condition has its first batch before any has its second.
 
-        So a sweep that is stopped has as many worlds of each condition as of any other, but for those of one round.
-        Within a round the order is drawn, so that what is missing is no end of a range.
+        If a sweep is stopped, the numbers of worlds per condition therefore differ by one round at most.
+        Within a round the order is random, so that the missing conditions are not at one end of a range.
         """
         rng = np.random.default_rng(self.order_seed)
         for seeds in self.rounds:
@@ -103,7 +103,12 @@ class SweepPlan:
                 yield self._batch(condition, seeds)
 
     def left(self, done: Done, part: tuple[int, int] = (1, 1)) -> list[Batch]:
-        """The batches of worlds that are not done, in their order."""
+        """The batches of unfinished worlds, in order.
+
+        Args:
+            done: Finished seeds of each condition.
+            part: Number of a part, from 1, and the number of parts; only batches of this part are returned.
+        """
         found: list[Batch] = []
         for index, batch in enumerate(self.batches()):
             if index % part[1] == part[0] - 1:
@@ -114,11 +119,11 @@ class SweepPlan:
         return found
 
     def changes(self, condition: SweepCondition) -> dict[str, Any]:
-        """What a condition changes in its base, by complete paths."""
+        """The settings that a condition changes in its base, by complete path."""
         return changes(self.places[condition.base], condition.settings)
 
     def text(self) -> str:
-        """As JSON; the values of a factor are one list."""
+        """The plan as JSON, with one list of values per factor."""
         bases = list(self.places)
         content = {
             "format": FORMAT,
@@ -139,13 +144,13 @@ _PLAIN = ("name", "steps", "seeds", "rounds", "keep", "order_seed", "factors", "
 
 @dataclass(frozen=True)
 class SweepFile:
-    """What the file of a sweep asks for.
+    """The content of a sweep's file.
 
     Attributes:
-        plan: its plan.
-        bases: the configs that conditions begin with.
-        worlds: most worlds of a batch.
-        left_out: conditions that cannot be, and why.
+        plan: The plan that follows from it.
+        bases: The base configs of its conditions, by digest.
+        worlds: Largest number of worlds in a batch.
+        left_out: Invalid conditions that were left out, with the reason.
     """
 
     plan: SweepPlan
@@ -155,13 +160,13 @@ class SweepFile:
 
 
 def read_name(name: str) -> tuple[str, tuple[int, ...]]:
-    """What the name of a result says: the beginning that its condition has, and its seeds; none for another file."""
+    """The prefix and the seeds in the name of a result; both empty for any other file."""
     match = re.fullmatch(r"([0-9a-f]+-[0-9]+)-([0-9.-]+)\.json", name)
     return (match[1], parse_seeds(match[2].replace(".", ","))) if match else ("", ())
 
 
 def done_seeds(names: Sequence[str]) -> dict[str, set[int]]:
-    """What is done, from the names of results."""
+    """The finished seeds, from the names of results."""
     done: dict[str, set[int]] = {}
     for key, seeds in map(read_name, names):
         done.setdefault(key, set()).update(seeds)
@@ -169,7 +174,12 @@ def done_seeds(names: Sequence[str]) -> dict[str, set[int]]:
 
 
 def rounds_of(seeds: Sequence[int], worlds: int) -> tuple[tuple[int, ...], ...]:
-    """Seeds in groups that make a batch each."""
+    """Divides seeds into groups, one for each batch of a condition.
+
+    Args:
+        seeds: Seeds of a condition.
+        worlds: Largest number of worlds in a batch.
+    """
     ends = [0]
     for i in range(len(seeds)):
         if i - ends[-1] == worlds or len(seed_text(seeds[ends[-1] : i + 1])) > LONGEST_SEEDS:
@@ -178,13 +188,18 @@ def rounds_of(seeds: Sequence[int], worlds: int) -> tuple[tuple[int, ...], ...]:
 
 
 def write_plan(file: SweepFile, store: Store) -> SweepPlan:
-    """Writes the plan, so that the sweep needs its file no longer; one that is there already grows into it.
+    """Writes the plan of a sweep to its store, which makes the sweep independent of its file.
 
-    Configs come first and the plan last: where there is a plan, all of it is there. Worlds that are in both plans
-    keep their batches.
+    A plan that is already there is extended. Configs are written first and the plan last, so an existing plan is always
+    complete. Worlds in both plans keep their batches.
+
+    Args:
+        file: Content of the sweep's file.
+        store: Where the sweep is stored.
 
     Raises:
-        EnsembleError: a sweep lives there that has no world of this one, or it cannot be written.
+        EnsembleError: The store contains a run, or a sweep that has another length or no world of this one; or it
+            cannot be written.
     """
     if store.folder is not None and holds_run(store.folder):
         raise EnsembleError(f"{store.location} holds a run: give the sweep another place with --out")
@@ -212,7 +227,7 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
             for rule in base.rules:
                 store.write(_rule_name(rule.digest), rule.text.encode())
     store.write(PLAN, plan.text().encode())
-    store.remove(TABLE)  # of what was wanted before
+    store.remove(TABLE)  # it belongs to the earlier plan
     return plan
 
 
@@ -220,7 +235,7 @@ def load_plan(store: Store) -> SweepPlan:
     """Reads a plan.
 
     Raises:
-        EnsembleError: there is none, or it cannot be read.
+        EnsembleError: There is no plan, or it cannot be read.
     """
     content = store.read(PLAN)
     if content is None:
@@ -250,10 +265,10 @@ def _tuples(value: Any) -> Any:
 
 
 def load_bases(plan: SweepPlan, store: Store) -> list[Config]:
-    """The configs that the conditions of a sweep begin with, as far as they are there.
+    """The base configs of a sweep's conditions, without missing ones.
 
     Raises:
-        ConfigError: One cannot be read.
+        ConfigError: One of them cannot be read.
     """
     texts = ((_config_name(base), store.read(_config_name(base))) for base in plan.places)
     return [parse_config(text.decode(), f"{store.location}/{name}") for name, text in texts if text is not None]
@@ -262,9 +277,15 @@ def load_bases(plan: SweepPlan, store: Store) -> list[Config]:
 def load_config_of(store: Store, key: str, base: str, changed: Mapping[str, Any]) -> Config:
     """The config of a condition.
 
+    Args:
+        store: Where the sweep is stored.
+        key: Digest that the config must have.
+        base: Digest of its base.
+        changed: Settings to change in the base, by complete path.
+
     Raises:
-        EnsembleError: It is missing, or another one.
-        ConfigError: It cannot be read.
+        EnsembleError: The base is missing, or the config does not have this digest.
+        ConfigError: The base cannot be read.
     """
     name = _config_name(base)
     content = store.read(name)
@@ -277,10 +298,10 @@ def load_config_of(store: Store, key: str, base: str, changed: Mapping[str, Any]
 
 
 def load_rules(store: Store, config: Config) -> tuple[RuleSource, ...]:
-    """The texts of the rules that a condition is pinned to.
+    """The source texts of the rules to which a condition is pinned.
 
     Raises:
-        EnsembleError: One is missing or damaged.
+        EnsembleError: One of them is missing or damaged.
     """
     return tuple(_load_rule(store, place) for place in rule_places(config))
 

@@ -1,4 +1,4 @@
-"""Makes the runs of a plan, as many at a time as fill the processors, and passes Ctrl-C and SIGTERM on to them."""
+"""Makes the runs of a plan, as many at a time as fill the processors, and forwards Ctrl-C and SIGTERM to them."""
 
 import signal
 import sys
@@ -28,11 +28,11 @@ class _Worker(Generic[T]):
     """A process that works on a job.
 
     Attributes:
-        job: its job.
-        threads: number of threads that it uses.
-        process, link: the process, and our end of the pipe to it.
-        told: how many signals were passed on to it.
-        ready: whether its run has begun, so that it counts signals.
+        job: The job that it works on.
+        threads: Number of threads that it uses.
+        process, link: The process, and our end of the pipe to it.
+        told: Number of signals forwarded to it.
+        ready: Whether its run has started, so that it counts signals.
     """
 
     job: T
@@ -44,7 +44,7 @@ class _Worker(Generic[T]):
 
 
 class JobListener(Protocol[T_contra]):
-    """What hears how several runs go on and end, such as a display of their progress."""
+    """Is notified of the progress and the end of several runs; for example, a progress display."""
 
     def update(self, job: T_contra, moment: Moment) -> None:
         """Shows a moment of a run; called about five times a second for each."""
@@ -56,18 +56,23 @@ class JobListener(Protocol[T_contra]):
 
 
 def make_here(jobs: Sequence[T], threads: int, display: JobListener[T]) -> dict[Path, Outcome]:
-    """Makes the runs of jobs, each in its own process, as many at a time as fill the threads.
+    """Runs jobs, each in its own process, as many at a time as fill the threads.
 
-    Ctrl-C or SIGTERM ends every run after its current window, a second one immediately; jobs that have not begun are
-    not run. A run that fails does not end the others.
+    Ctrl-C or SIGTERM stops every run after its current window, and a second signal stops it immediately; jobs that have
+    not started are not run. A run that fails does not stop the others.
+
+    Args:
+        jobs: The jobs to run, in this order.
+        threads: Threads to divide among the processes.
+        display: Listener that is notified of each job's progress and end.
 
     Returns:
-        How each job ended, by its run's folder; jobs that never began are missing.
+        How each job ended, by the folder of its run; jobs that never started are missing.
     """
     waiting, workers = list(jobs), list[_Worker[T]]()
     outcomes: dict[Path, Outcome] = {}
     if sys.platform != "win32":
-        # Python starts this helper with the first process, and unblocks signals then.
+        # Otherwise Python would start this helper with the first process, and unblock signals at that moment.
         resource_tracker.ensure_running()
     with count_interrupts() as interrupted:
         while workers or (waiting and not interrupted.count):
@@ -88,7 +93,7 @@ def make_here(jobs: Sequence[T], threads: int, display: JobListener[T]) -> dict[
 
 
 def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> int:
-    """How many threads the next job begins with: those it wants; the last job gets all free ones; 0 if it must wait."""
+    """Threads for the next job: as many as it can use, all free ones for the last job, or 0 if it must wait."""
     if not waiting:
         return 0
     free, needed = threads - sum(taken), min(waiting[0].threads, threads)
@@ -98,9 +103,9 @@ def next_share(waiting: Sequence[Job], taken: Sequence[int], threads: int) -> in
 
 
 def _pass_on(worker: _Worker[Any]) -> None:
-    """Passes one signal on, by the pipe: Windows has no signals between processes."""
+    """Forwards one signal through the pipe, since Windows has no signals between processes."""
     worker.told += 1
-    with suppress(OSError):  # it has just ended; its last message still waits in the pipe
+    with suppress(OSError):  # it has just ended, and its last message is still in the pipe
         worker.link.send(SIGNALS[0])
 
 
@@ -116,8 +121,8 @@ def _start(job: T, threads: int) -> _Worker[T]:
 
 @contextmanager
 def _blocked_signals() -> Iterator[None]:
-    """Blocks signals, so that a new process begins with them blocked; this process gets them afterwards."""
-    if sys.platform == "win32":  # a new process has Ctrl-C until it leaves the terminal
+    """Blocks signals, so that a new process starts with them blocked; this process receives them afterwards."""
+    if sys.platform == "win32":  # a new process receives Ctrl-C until it leaves the terminal
         yield
         return
     before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
@@ -128,10 +133,10 @@ def _blocked_signals() -> Iterator[None]:
 
 
 def _hear(worker: _Worker[T], display: JobListener[T]) -> Outcome | None:
-    """Reads one message of a worker: a moment, which is shown, or how its run ended, which is returned."""
+    """Reads one message of a worker: a moment, which is displayed, or the outcome of its run, which is returned."""
     try:
         said = worker.link.recv()
-    except (EOFError, OSError):  # it ended without a message: for example, the system killed it because memory ran out
+    except (EOFError, OSError):  # it ended without a message, for example because it was killed for lack of memory
         worker.process.join()
         code = worker.process.exitcode or 0
         cause = (

@@ -1,22 +1,23 @@
-"""The rows of a sweep's table: one per world."""
+"""The rows of a sweep's table, one per world."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 KEYS = ("condition", "repetition", "seed")
 SPECIES = "species"
-"""The part of a summary that has the numbers of several species, by name."""
+"""Key of a summary under which several species have their numbers, by name."""
 TIMED = "steps_per_second"
-"""The part of a summary that differs from one machine to another: it is not in the table."""
+"""Key of a summary that depends on the machine, so the table omits it."""
 
 Row = dict[str, Any]
 
 
 def world_rows(summary: Mapping[str, Any], digests: Sequence[str]) -> list[Row]:
-    """What the table has of each world of a batch beside its settings: seed, digest of its end, and its summary.
+    """The columns of each world of a batch, without its settings: seed, digest of its last state, and its summary.
 
-    Nested values get names joined by "_": weights.w_action.mean is w_action_mean. Where there are several species, what
-    is of one of them begins with its name and a dot, as in prey.alive_mean, and sums over all are totals: total_alive.
+    Names of nested values are joined by "_": weights.w_action.mean becomes w_action_mean. With several species, the
+    numbers of one start with its name and a dot, as in prey.alive_mean; sums over all start with "total", as in
+    total_alive.
     """
     rows = []
     for world, digest in zip(summary["worlds"], digests, strict=True):
@@ -30,7 +31,7 @@ def world_rows(summary: Mapping[str, Any], digests: Sequence[str]) -> list[Row]:
 
 def _flat(values: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
     for name, value in values.items():
-        # Genes have their kind in their names already.
+        # Names of genes already include their kind.
         place = name if not before or before == "weights" else f"{before}_{name}"
         if isinstance(value, Mapping):
             yield from _flat(value, place)

@@ -1,4 +1,4 @@
-"""The jobs that make the runs of an ensemble: worlds that exist are used, too short ones go on, others begin."""
+"""The jobs that complete an ensemble: existing worlds are used, short ones are continued, and missing ones started."""
 
 import re
 from collections.abc import Sequence
@@ -14,17 +14,17 @@ from hedon.experiment.resume import make, require_setting
 from hedon.record.folder import CHECKPOINT_SECONDS, checkpoint_paths, holds_run
 
 LONGEST_NAME = 150
-"""Most characters of a setting in the name of a run's folder."""
+"""Largest number of characters of a condition in the name of a run's folder."""
 
 
 @dataclass(frozen=True)
 class RunJob:
-    """A run to begin or to continue.
+    """A run to start or to continue.
 
     Attributes:
-        plan: of the run; its threads are given when it begins.
-        world_steps: steps still to run, summed over its worlds [step].
-        past: from which its worlds go on; None where they begin.
+        plan: Plan of the run, without its number of threads, which is set when it starts.
+        world_steps: Steps still to run, summed over its worlds [step].
+        past: The past that its worlds continue; None if they start at step 0.
     """
 
     plan: RunPlan
@@ -38,12 +38,12 @@ class RunJob:
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """Of its worlds."""
+        """The seeds of its worlds."""
         return self.plan.seeds
 
     @property
     def steps(self) -> int:
-        """Of each world in the end [step]."""
+        """The total number of steps of each world [step]."""
         return self.plan.steps
 
     @property
@@ -53,11 +53,11 @@ class RunJob:
 
     @property
     def label(self) -> str:
-        """Its name in displays: the folder."""
+        """Its name in displays: the name of the folder."""
         return str(self.folder)
 
     def newest(self) -> str:
-        """The name of its last checkpoint; empty where there is none."""
+        """The name of its last checkpoint; empty if it has none."""
         return max((path.name for path in checkpoint_paths(self.folder)), default="")
 
     def describe(self) -> str:
@@ -65,7 +65,7 @@ class RunJob:
         return f"{self.plan.config.name}, seed {', '.join(map(str, self.plan.seeds))}"
 
     def make(self, threads: int, callback: Callback | None) -> str:
-        """Begins, continues, or only reads the run; see `hedon.experiment.resume.make`."""
+        """Starts, continues, or only reads the run; see `hedon.experiment.resume.make`."""
         plan, callbacks = replace(self.plan, threads=threads), () if callback is None else (callback,)
         if self.past is None or holds_run(plan.out):
             return make(plan, callbacks).status
@@ -79,10 +79,14 @@ class RunJob:
 def run_jobs(ensemble: Ensemble, checkpoint_seconds: float = CHECKPOINT_SECONDS) -> list[RunJob]:
     """The runs that are missing or too short, the longest first.
 
-    A world that died out has all the steps that it can have. It counts, and no other world replaces it.
+    A world that died out is complete: it counts, and no other world replaces it.
+
+    Args:
+        ensemble: The worlds that are needed and those that exist.
+        checkpoint_seconds: Time between two checkpoints of a run [s].
 
     Raises:
-        RecordError: the folder of a demand's name holds a run with other settings.
+        RecordError: The folder with the name of a demand contains a run with other settings.
     """
     jobs: list[RunJob] = []
     for demand in ensemble.demands:
@@ -119,7 +123,7 @@ def _job(demand: Demand, seeds: Sequence[int], steps: int, out: Path, checkpoint
 
 
 def folder_name(config: Config) -> str:
-    """A name for the run of a setting that tells it from the others: "baseline-corrected-learning.entropy_coef-0.0"."""
+    """The name of a condition's run, unique to its settings: "baseline-corrected-learning.entropy_coef-0.0"."""
     name = re.sub(r"[^A-Za-z0-9_.-]+", "-", setting_name(config)).replace("--", "-").strip("-")
-    # A setting with many changes can make a name longer than file systems allow.
+    # With many changed settings, the name could be longer than file systems allow.
     return name if len(name) <= LONGEST_NAME else f"{config.preset}-{config.fidelity}-{digest(config)[:8]}"

@@ -1,11 +1,11 @@
-"""Writes the script of a job array for Slurm: each task of the array makes a part of some jobs."""
+"""Writes the script of a Slurm job array, in which each task runs a part of the jobs."""
 
 import shlex
 import sys
 from collections.abc import Sequence
 
 SIGNAL_SECONDS = 120
-"""So long before its time is over Slurm tells a task, which then saves where it is [s]."""
+"""Time before its limit at which Slurm signals a task, so that it can save its state [s]."""
 
 TEMPLATE = """\
 #!/bin/sh
@@ -26,11 +26,11 @@ def slurm_script(name: str, words: Sequence[str], tasks: int, workers: int, hour
     """The script of a job array.
 
     Args:
-        name: Of what is made.
-        words: Of the command after `hedon` that makes a part of it, without --part.
-        tasks: Of the array.
-        workers: Processes of a task, one processor each.
-        hours: That a task may take [h].
+        name: Name of the job.
+        words: Words of the command after `hedon`, without --part, which each task adds.
+        tasks: Number of tasks in the array.
+        workers: Processes per task, one processor each.
+        hours: Time limit of a task [h].
     """
     return TEMPLATE.format(
         name=name[:1].upper() + name[1:],

@@ -1,4 +1,4 @@
-"""How far a sweep is, and how long it will still take."""
+"""The progress of a sweep and the time that it still needs."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,15 +15,15 @@ from hedon.record.reader import open_run
 
 @dataclass(frozen=True)
 class Status:
-    """How far a sweep is.
+    """The progress of a sweep.
 
     Attributes:
-        batches, done: how many there are, and have a result.
-        worlds: with a row in the table.
-        extinct: of them, died out.
-        begun: batches in progress or interrupted, by their settings and seeds, with the share of each that is recorded.
-        seconds: that the batches so far took, summed over them [s].
-        seconds_left: of one worker for all the rest, if it goes as fast as so far [s]; None before the first result.
+        batches, done: Number of batches, and of those with a result.
+        worlds: Number of finished worlds.
+        extinct: Number of finished worlds that died out.
+        begun: Batches in progress or interrupted, by settings and seeds, each with the share that is recorded.
+        seconds: Time that the finished batches took, summed over batches [s].
+        seconds_left: Time that one worker needs for the rest at the same speed [s]; None before the first result.
     """
 
     batches: int
@@ -36,7 +36,7 @@ class Status:
 
 
 def sweep_status(plan: SweepPlan, store: Store) -> Status:
-    """Reads how far a sweep is, from its results and, where they are in its folder, from its runs under way."""
+    """Reads the progress of a sweep from its results and, if they are in its folder, from its unfinished runs."""
     missing, done, seconds, worlds = open_batches(plan, store), 0, 0.0, list[dict[str, Any]]()
     for _, result in read_results(plan, store):
         done, seconds = done + 1, seconds + (result["seconds"] or 0.0)
@@ -47,7 +47,7 @@ def sweep_status(plan: SweepPlan, store: Store) -> Status:
         left += len(batch.seeds) * (1.0 - (share or 0.0))
         if share is not None:
             begun[describe(plan.conditions[batch.condition].settings, batch.seeds)] = share
-    rate = seconds / len(worlds) if worlds else None  # [s] of each world
+    rate = seconds / len(worlds) if worlds else None  # time per world [s]
     return Status(
         batches=len(missing) + done,
         done=done,
@@ -66,7 +66,7 @@ def _share(store: Store, name: str, steps: int) -> float | None:
         return None
     try:
         population = open_run(folder).population(skip_damaged=True)
-    except (HedonError, OSError):  # it is being made, or removed since it is done
+    except (HedonError, OSError):  # it is being created, or was removed after it finished
         return None
     last = population["step"].max() if population.height else 0
     return float(last) / steps if isinstance(last, int) else 0.0

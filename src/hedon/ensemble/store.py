@@ -1,6 +1,6 @@
-"""Where results live: a folder, or a place that fsspec reaches, such as `s3://bucket/sweep`.
+"""Storage for results: a folder, or a place that fsspec can reach, such as `s3://bucket/sweep`.
 
-Whatever is written is whole or not there: it is written under a passing name and then named.
+Writes are atomic: content is written under a temporary name and then renamed.
 """
 
 import secrets
@@ -17,33 +17,33 @@ from hedon.ensemble.error import EnsembleError
 from hedon.record.atomic import write_atomically
 
 READERS = 32
-"""Contents that are read at a time."""
+"""Number of contents read at a time."""
 TRIES = 4
-"""To read a content of which a part arrives: connections break, and some stores cut off what is replaced meanwhile."""
+"""Attempts to read a content that arrives incomplete: connections break, and some stores cut off replaced objects."""
 PAUSE = 0.1
-"""Between two tries [s]."""
+"""Time between two attempts [s]."""
 PASSING = ".tmp-"
-"""Part of the names of objects that are being written; no reader sees them."""
+"""Prefix of the names of objects that are being written, which readers ignore."""
 _TORN = (("aiohttp", "ClientPayloadError"), ("botocore.exceptions", "FlexibleChecksumError"))
-"""Libraries, and what each raises where not one whole content arrives."""
+"""Libraries, and the error that each raises if a content does not arrive in one piece."""
 
 
 class Store:
     """Named contents; names are relative paths with "/".
 
-    An object store shows an object only when all of it has arrived, other file systems show a file as it grows. So
-    contents get a passing name first; what a writer that was killed leaves there, nobody reads. In a folder of this
-    machine they reach the disk before they are named.
+    An object store shows an object only once it is complete, but other file systems show a file as it grows. Contents
+    therefore get a temporary name first, and readers ignore what a killed writer leaves under such a name. In a folder
+    on this machine, contents reach the disk before they are renamed.
 
     Args:
-        location: Path of a folder, or a URL; nothing is made there yet.
+        location: Path of a folder, or a URL. Nothing is created there yet.
 
     Attributes:
-        location: As it was given.
-        folder: On this machine, or shared by all that take part; None for a URL.
+        location: The path or URL, as given.
+        folder: The folder, on this machine or shared by all machines that take part; None for a URL.
 
     Raises:
-        EnsembleError: A URL whose kind needs a package that is not installed, or that is unknown.
+        EnsembleError: The URL's scheme is unknown, or needs a package that is not installed.
     """
 
     def __init__(self, location: str) -> None:
@@ -51,7 +51,7 @@ class Store:
         self.location = location
         self.folder = None if "://" in location else Path(location)
         try:
-            # A path may hold what means something in a URL.
+            # A path may contain characters with a meaning in URLs.
             self._system, self._root = (
                 fsspec.url_to_fs(location)
                 if self.folder is None
@@ -64,12 +64,16 @@ class Store:
             raise EnsembleError(f'{location}: {error}: pip install "hedon[remote]"') from error
         except ValueError as error:
             raise EnsembleError(f"{location}: {error}") from error
-        # Listings must not come from a cache: other machines write here too.
+        # Listings must not come from a cache, since other machines write here too.
         self._system.use_listings_cache = False
         self._made: set[str] = set()
 
     def write(self, name: str, content: bytes) -> None:
-        """Writes a content, whole or not at all; the last one of several counts.
+        """Writes a content atomically, replacing an earlier one.
+
+        Args:
+            name: Relative path, with "/".
+            content: The bytes to write.
 
         Raises:
             EnsembleError: It cannot be written.
@@ -93,7 +97,7 @@ class Store:
                 raise
 
     def read(self, name: str) -> bytes | None:
-        """A content, or None where there is none of this name. EnsembleError: it cannot be read."""
+        """Reads a content; None if there is none with this name. Raises EnsembleError if it cannot be read."""
         with self._asked(f"cannot read {name} of"), suppress(FileNotFoundError, NotADirectoryError):
             for left in reversed(range(TRIES)):
                 try:
@@ -105,16 +109,16 @@ class Store:
         return None
 
     def read_all(self, names: Sequence[str]) -> list[bytes | None]:
-        """Several contents, in their order, `READERS` at a time: each answer of a store takes a while.
+        """Reads several contents, in this order, `READERS` at a time, since each request takes a while.
 
         Raises:
-            EnsembleError: One cannot be read.
+            EnsembleError: One of them cannot be read.
         """
         with ThreadPoolExecutor(READERS) as pool:
             return list(pool.map(self.read, names))
 
     def names(self, folder: str) -> list[str]:
-        """The plain names directly within a folder, sorted. EnsembleError: they cannot be read."""
+        """The sorted names of the entries of a folder. Raises EnsembleError if they cannot be listed."""
         self._system.invalidate_cache()
         found: list[str] = []
         with self._asked(f"cannot list {folder} of"), suppress(FileNotFoundError, NotADirectoryError):
@@ -123,13 +127,13 @@ class Store:
         return sorted({name for name in names if name and not name.startswith(".")})
 
     def remove(self, name: str) -> None:
-        """Removes a content, if it is there. EnsembleError: it cannot be removed."""
+        """Removes a content, if it exists. Raises EnsembleError if it cannot be removed."""
         with self._asked(f"cannot remove {name} of"), suppress(FileNotFoundError, NotADirectoryError):
             self._system.rm_file(self._path(name))
 
     @contextmanager
     def _asked(self, what: str) -> Iterator[None]:
-        """Gives the errors of the system's own library, which may be of any kind, in one line."""
+        """Converts any error of the file system's library to an EnsembleError with a one-line message."""
         try:
             yield
         except Exception as error:
@@ -141,5 +145,5 @@ class Store:
 
 
 def _is_torn(error: Exception) -> bool:
-    """Whether only a part of a content arrived, or parts of two, as the libraries say by which fsspec asks servers."""
+    """Whether the error means that a content arrived incomplete or mixed with another one."""
     return any(isinstance(error, getattr(sys.modules.get(name), kind, ())) for name, kind in _TORN)
