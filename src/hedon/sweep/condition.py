@@ -1,8 +1,8 @@
-"""The conditions of a sweep: each a base config, and what it changes in it.
+"""The conditions of a sweep: each consists of a base config and the settings that it changes.
 
-A base is loaded as any config is. A factor that only replaces the values of some settings of it changes these alone,
-with the same checks, which takes a tenth of the time. What does more, such as a rule or a new kind of food, has a
-base of its own.
+A base is loaded like any config. If factors only replace values of settings, a condition is derived from its base with
+the same checks, which takes a tenth of the time. Conditions that change more, such as a rule or a kind of food, have
+their own base.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -27,17 +27,17 @@ from hedon.experiment.rule import rules_beside
 from hedon.sweep.factor import FIDELITY, PRESET
 
 SHAPING = (PRESET, FIDELITY, "rule", "policy", "founders", "networks")
-"""Last words of factors that are more than values: a run needs more than the config for them, or refuses them."""
+"""Last words of factors that are not plain values: a run needs more than the config for them, or refuses them."""
 
 
 @dataclass(frozen=True)
 class Conditions:
-    """Conditions that can be, and why others cannot.
+    """The valid conditions of a sweep, and the errors of the invalid ones.
 
     Attributes:
-        found: those that can be.
-        bases: that they begin with, by digest.
-        invalid: of each other one, where it is and what is wrong.
+        found: The valid conditions.
+        bases: Their base configs, by digest.
+        invalid: The error of each invalid condition.
     """
 
     found: tuple[SweepCondition, ...]
@@ -47,13 +47,13 @@ class Conditions:
 
 @dataclass(frozen=True)
 class Loader:
-    """Loads conditions in full.
+    """Loads complete configs of conditions.
 
     Attributes:
-        path: of the sweep's file.
-        base: preset or file that they begin as, unless a factor says it.
-        fidelity: likewise; None for that of the base.
-        fixed: what is the same in all, by path.
+        path: Path of the sweep's file.
+        base: Preset or file on which conditions are based, unless a factor sets it.
+        fidelity: Their fidelity, unless a factor sets it; None for the fidelity of the base.
+        fixed: Settings that all conditions share, as pairs of path and value.
     """
 
     path: Path
@@ -62,10 +62,10 @@ class Loader:
     fixed: Sequence[tuple[str, Any]]
 
     def load(self, settings: Settings) -> RunPlan:
-        """The config of a condition and its rules.
+        """The config of a condition and its rules, as a plan.
 
         Raises:
-            ConfigError: It cannot be; the message says where.
+            ConfigError: The condition is invalid; the message gives the place.
         """
         source = settings.get(PRESET, self.base)
         if source.endswith(".toml") and not Path(source).is_absolute():
@@ -82,17 +82,22 @@ class Loader:
             raise ConfigError(self.place(settings), [Problem("", str(error))]) from None
 
     def place(self, settings: Settings) -> str:
-        """What errors call a condition."""
+        """The name of a condition in error messages."""
         varied = ", ".join(f"{name} = {format_value(value)}" for name, value in settings.items())
         return f"{self.path}, with {varied}" if varied else str(self.path)
 
     def _from_folder(self, name: str, value: Any) -> Any:
-        """A value of the file; where a rule in Python is, it says relative to its own folder."""
+        """A value of the file; the path of a Python rule, relative to the file's folder, becomes absolute."""
         return absolute_rule(value, self.path.parent) if name.endswith(".rule") else value
 
 
 def make_conditions(loader: Loader, settings: Sequence[Settings]) -> Conditions:
-    """Makes the conditions of a sweep, and checks all of them."""
+    """Makes and checks all conditions of a sweep.
+
+    Args:
+        loader: Loads complete configs.
+        settings: Values of the factors of each condition.
+    """
     groups: dict[str, list[int]] = {}
     for index, each in enumerate(settings):
         groups.setdefault(repr(list(_shaping(each).items())), []).append(index)
@@ -122,7 +127,7 @@ def _shaping(settings: Settings) -> Settings:
 
 
 def _one_by_one(loader: Loader, settings: Sequence[Settings], group: Sequence[int]) -> _Made:
-    """Each condition is a base of its own."""
+    """Conditions that each have their own base."""
     for index in group:
         try:
             base = _base(loader.load(settings[index]), {})
@@ -132,9 +137,9 @@ def _one_by_one(loader: Loader, settings: Sequence[Settings], group: Sequence[in
 
 
 def _by_values(loader: Loader, settings: Sequence[Settings], group: Sequence[int]) -> list[Any]:
-    """Conditions as changes of one base; none where the factors are more than values of its settings.
+    """Conditions derived from one base; none if the factors change more than values of its settings.
 
-    The first and the last of the conditions, and the first that cannot be, are loaded in full too.
+    As a check, the first, the last and the first invalid condition are also loaded in full.
     """
     shaping = _shaping(settings[group[0]])
     names = [name for name in settings[group[0]] if name not in shaping]
@@ -168,7 +173,7 @@ def _by_values(loader: Loader, settings: Sequence[Settings], group: Sequence[int
 
 
 def _loads_as(loader: Loader, settings: Settings, config: Config | None) -> bool:
-    """Whether a condition that is loaded in full is a config; with None, whether it cannot be."""
+    """Whether a condition, loaded in full, equals a config; for None, whether it is invalid."""
     try:
         return loader.load(settings).config == config
     except ConfigError:
@@ -180,7 +185,7 @@ def _base(plan: RunPlan, places: Mapping[str, tuple[str, ...]]) -> Base:
 
 
 def _places(config: Config, name: str) -> Iterator[str]:
-    """The complete paths that a factor's name stands for, as in a file: `birth.kappa` is that of all species."""
+    """The complete paths that a factor's name stands for: as in a config, `birth.kappa` means all species."""
     known = {path for path, _, _ in leaves(config) if changes_worlds(path)}
     paths = [f"species.{each}.{name}" for each in config.species] if name.partition(".")[0] in PER_SPECIES else [name]
     if name.startswith(f"food.{EVERY}."):

@@ -1,4 +1,4 @@
-"""Which settings a sweep has: factors crossed, zipped, or drawn by a Latin hypercube or a Sobol sequence."""
+"""Computes the conditions of a sweep: factors are crossed, zipped, or drawn by Latin hypercube or Sobol sequence."""
 
 import warnings
 from collections.abc import Sequence
@@ -14,13 +14,13 @@ DRAWS = (LATIN, SOBOL)
 
 @dataclass(frozen=True)
 class Design:
-    """How factors are put together.
+    """How factors are combined.
 
     Attributes:
-        draw: how values are drawn from ranges, one of `DRAWS`.
-        points: how many are drawn; 0 where nothing is.
-        seed: of the draw, and of the order of settings.
-        zipped: groups of factors that go together, value by value.
+        draw: How values are drawn from ranges, one of `DRAWS`.
+        points: Number of points to draw; 0 if no factor has a range.
+        seed: Seed of the points, and of the order of conditions.
+        zipped: Groups of factors that vary together, value by value.
     """
 
     draw: str = SOBOL
@@ -30,10 +30,14 @@ class Design:
 
 
 def all_settings(factors: Sequence[Factor], design: Design) -> list[Settings]:
-    """Every combination: groups of zipped factors and all others are crossed, what is drawn from ranges too.
+    """All combinations of values: groups of zipped factors, drawn points and all other factors are crossed.
+
+    Args:
+        factors: The factors of the sweep.
+        design: How they are combined.
 
     Returns:
-        Without factors, one empty setting.
+        The values of each combination; one empty combination if there are no factors.
     """
     groups = [[{}]]
     taken = {name for group in design.zipped for name in group}
@@ -54,12 +58,12 @@ def all_settings(factors: Sequence[Factor], design: Design) -> list[Settings]:
 
 
 def _draw(factors: Sequence[Factor], design: Design) -> list[Settings]:
-    """Points in the ranges of some factors: spread evenly, and the same for the same seed."""
+    """Evenly spread points in the ranges of some factors; equal seeds give equal points."""
     from scipy.stats import qmc
 
     kind = {LATIN: qmc.LatinHypercube, SOBOL: qmc.Sobol}[design.draw]
     with warnings.catch_warnings():
-        # Sobol's points are most even where their number is a power of 2; the guide says so.
+        # Sobol points are most even if their number is a power of 2, as the guide explains; this needs no warning.
         warnings.simplefilter("ignore", UserWarning)
         shares = kind(d=len(factors), seed=design.seed).random(design.points).tolist()
     return [{factor.name: factor.at(share) for factor, share in zip(factors, row, strict=True)} for row in shares]

@@ -1,4 +1,4 @@
-"""Factors of a sweep, what they vary, and how a file says it."""
+"""The factors of a sweep: what they vary, and how a sweep's file specifies them."""
 
 import math
 from dataclasses import dataclass
@@ -10,23 +10,23 @@ from hedon.config.load import FIDELITIES, PRESETS
 from hedon.config.problem import Problem, format_value, nearest
 
 PRESET, FIDELITY = "preset", "fidelity"
-"""Factors that are not settings: they choose what all settings begin as."""
+"""Factors that are not settings: they choose the starting values of all settings."""
 NAMED = {PRESET: PRESETS, FIDELITY: FIDELITIES}
 KEYS = ("values", "range", "log", "count")
 MOST_VALUES = 10_000
-"""Most values of one factor."""
+"""Largest number of values of one factor."""
 
 
 @dataclass(frozen=True)
 class Factor:
-    """What is varied.
+    """A setting that a sweep varies.
 
     Attributes:
-        name: path of a setting such as "energy.basic_cost", or `PRESET` or `FIDELITY`.
-        values: that it takes; empty where it is drawn from a range.
-        low, high: of the range from which it is drawn.
-        log: whether it is drawn evenly in the logarithm.
-        whole: whether drawn values are rounded to whole numbers: both ends of the range are whole.
+        name: Path of a setting such as "energy.basic_cost", or `PRESET` or `FIDELITY`.
+        values: The values that it takes; empty if they are drawn from a range.
+        low, high: Ends of the range.
+        log: Whether values are drawn evenly on a logarithmic scale.
+        whole: Whether drawn values are rounded to whole numbers, as is done if both ends of the range are whole.
     """
 
     name: str
@@ -52,12 +52,16 @@ class Factor:
 
 
 def read_factor(name: str, said: Any) -> Factor | Problem:
-    """A factor from its entry: a list of values, or a table with `values`, or with `range` or `log` and `count`.
+    """Reads a factor from its entry: a list of values, or a table with `values`, or with `range` or `log` and `count`.
 
-    With `count` a range gives that many values, evenly apart, both ends included. Without, values are drawn from it.
+    With `count`, a range gives that many evenly spaced values, including both ends. Without it, values are drawn.
+
+    Args:
+        name: Name of the factor.
+        said: Its entry in the file.
 
     Returns:
-        The factor, or what is wrong with the entry.
+        The factor, or the problem with its entry.
     """
     place = f"factor.{name}"
     table = {"values": said} if isinstance(said, list) else said

@@ -1,4 +1,4 @@
-"""Reads the file of a sweep, and says all that is wrong with it."""
+"""Reads the file of a sweep and reports all of its problems."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -17,18 +17,22 @@ from hedon.sweep.factor import FIDELITY, PRESET, Factor, read_factor
 KEYS = ("base", "fidelity", "steps", "seeds", "worlds", "keep", "set", "factor", "design")
 DESIGN = ("draw", "points", "seed", "zip")
 KEEP = ("agents", "population", "run")
-"""What a sweep may keep beside its table: tables of each batch, or its whole run folder."""
+"""Records that a sweep may keep in addition to its table: tables of each batch, or its whole run folder."""
 MOST_CONDITIONS = 100_000
 WORLDS = 4
-"""Default worlds of a batch."""
+"""Default number of worlds in a batch."""
 
 
 def read_sweep(path: Path | str, *, skip_invalid: bool = False) -> SweepFile:
-    """Reads and checks a file, and the config of every condition.
+    """Reads and checks the file of a sweep, and the config of every condition.
+
+    Args:
+        path: Path of the file.
+        skip_invalid: Whether to leave out conditions with an invalid config instead of raising an error.
 
     Raises:
-        ConfigError: it cannot be read, or something in it is wrong; it has all problems of the file, or those of all
-            conditions that cannot be.
+        ConfigError: The file cannot be read or is invalid; the error lists all problems of the file, or those of all
+            invalid conditions.
     """
     path = Path(path)
     tables, origin = read_toml(path), str(path)
@@ -77,11 +81,11 @@ def read_sweep(path: Path | str, *, skip_invalid: bool = False) -> SweepFile:
 
 
 def _refusal(origin: str, invalid: Sequence[ConfigError], count: int) -> ConfigError:
-    """The error of conditions that cannot be; with only one, its own."""
+    """The error for invalid conditions; if there is only one, its own error."""
     if len(invalid) == 1 == count:
         return invalid[0]
     if len(invalid) == count and all(each.problems == invalid[0].problems for each in invalid):
-        return ConfigError(origin, invalid[0].problems)  # as a misspelled name: the values do not matter
+        return ConfigError(origin, invalid[0].problems)  # for example a misspelled name, whatever the values
     listed = [Problem("", str(error).removeprefix(f"{origin}, ")) for error in invalid]
     what = f"{len(invalid):,} of {count:,} settings cannot be; --skip-invalid leaves them out"
     return ConfigError(origin, [Problem("factor", what), *listed])
@@ -96,7 +100,7 @@ def _table(tables: dict[str, Any], key: str, problems: list[Problem]) -> dict[st
 
 
 def _flat(table: dict[str, Any], before: str = "", *, stop: bool = False) -> Iterator[tuple[str, Any]]:
-    """Values by path, whether paths are quoted names or tables; with `stop`, tables that are factors stay whole."""
+    """Values by path, for quoted paths and nested tables alike; with `stop`, tables that are factors stay whole."""
     for name, value in table.items():
         path = f"{before}.{name}" if before else name
         if isinstance(value, dict) and not (stop and {"values", "range", "log", "count"} & set(value)):
@@ -158,7 +162,7 @@ def _zipped(groups: Any, factors: Sequence[Factor], problems: list[Problem]) -> 
         if len(set(lengths.values())) > 1:
             said = ", ".join(f"{name} {count}" for name, count in lengths.items())
             problems.append(Problem("design.zip", f"needs equally many values of each factor of a group, not {said}"))
-    # The first of a group in the order of the factors stands for it.
+    # Each group is sorted in the order of the factors, so that its first factor represents it.
     order = list(counts)
     return tuple(tuple(sorted(group, key=order.index)) for group in groups if set(group) <= seen)
 
@@ -183,7 +187,7 @@ def _whole(
 
 
 def _seeds(value: Any, problems: list[Problem]) -> tuple[int, ...]:
-    """Seeds from a list, from a text as `hedon run` takes it, or from how many there are: 4 means 1, 2, 3 and 4."""
+    """Seeds from a list, from a text as for `hedon run`, or from their number: 4 means 1, 2, 3 and 4."""
     try:
         if isinstance(value, int):
             return tuple(range(1, integer("seeds", value, 1, MAX_WORLDS) + 1))
