@@ -1,4 +1,4 @@
-"""Which combinations of rewards evolved? Weights of agents against one another, and what drift alone would do."""
+"""Which combinations of rewards evolved? Weights of agents against one another, compared with drift."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -49,7 +49,7 @@ class WeightGroup:
         title: Name of the condition.
         remark: Further information shown under the title.
         drift: By genome column, values that such agents would have under drift alone, as `drift_genes` returns them,
-            shape (draws,); genes without values are drawn without a control.
+            shape (draws,); genes without values get no control.
     """
 
     agents: pl.DataFrame

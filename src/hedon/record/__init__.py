@@ -1,4 +1,4 @@
-"""The files of a run: tables, manifest, checkpoints and last state; writing and reading them."""
+"""Writes and reads the files of a run: tables, manifest, checkpoints and last state."""
 
 from lazy_loader import attach_stub
 

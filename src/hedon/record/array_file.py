@@ -1,4 +1,4 @@
-"""Files of plain NumPy arrays: written in pieces, read where they lie. They may come from anyone: no pickle."""
+"""Files of plain NumPy arrays, written in pieces and memory-mapped for reading. Untrusted files are safe: no pickle."""
 
 import hashlib
 import io
@@ -14,22 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 _VERSION = (1, 0)
-"""Of the format of an array that NumPy has for any plain numbers."""
+"""Version of NumPy's array format that can store any plain numbers."""
 _ALIGNMENT = 64
-"""Arrays begin at multiples of it in the file, so that they can be used where they lie [byte]."""
+"""Arrays start at multiples of this in the file, so that they can be used without a copy [byte]."""
 _LOCAL_HEAD, _LENGTHS = 30, struct.Struct("<26xHH")
-"""Bytes before the name of a member, and where the lengths of its name and of what follows it stand (zip, 4.3.7)."""
+"""Bytes before the name of a member, and the position of the lengths of its name and extra field (zip, 4.3.7)."""
 _LONGEST_HEAD = np.lib.format.MAGIC_LEN + 2 + (1 << 16)
-"""Bytes that what an array is can take before its numbers, at most."""
+"""Largest size of the description of an array before its numbers [byte]."""
 _PIECE = 1 << 20
-"""Bytes of an array that are hashed at a time."""
+"""Size of the blocks in which an array is hashed [byte]."""
 
 
 class ArrayWriter:
-    """Writes an npz file as `numpy.savez` does, array after array, each in pieces. A context manager.
+    """Writes an npz file like `numpy.savez`, one array after another, each in pieces. Use it as a context manager.
 
     Args:
-        file: Open for writing, empty.
+        file: An empty file that is open for writing.
     """
 
     def __init__(self, file: BinaryIO) -> None:
@@ -50,19 +50,19 @@ class ArrayWriter:
         """Writes a whole array.
 
         Args:
-            name: Of it in the file.
-            array: Of plain numbers, any shape.
+            name: Name of the array in the file.
+            array: Plain numbers, any shape.
         """
         self.begin(name, array.dtype.str, array.shape)
         self.piece(np.ascontiguousarray(array).data.cast("B") if array.size else b"")
 
     def begin(self, name: str, dtype: str, shape: Sequence[int]) -> None:
-        """Begins an array; its bytes, in C order, follow by `piece`.
+        """Starts an array, whose bytes are then written with `piece`, in C order.
 
         Args:
-            name: Of it in the file.
-            dtype: Of its numbers, as NumPy writes it.
-            shape: Of it.
+            name: Name of the array in the file.
+            dtype: Type of its numbers, in NumPy's notation.
+            shape: Shape of the array.
         """
         self._end()
         kind = np.dtype(dtype)
@@ -74,12 +74,12 @@ class ArrayWriter:
         self._name, self._sums[name] = name, _sum_of(kind, tuple(shape))
 
     def piece(self, data: bytes | memoryview) -> None:
-        """Writes the next bytes of the array that was begun last."""
+        """Writes the next bytes of the array that was started last."""
         self._member.write(data)
         self._sums[self._name].update(data)
 
     def digest(self) -> str:
-        """SHA-256 of what was written so far: equal to `digest` of the same arrays."""
+        """SHA-256 of everything written so far, equal to `digest` of the same arrays."""
         return _digest({name: each.hexdigest() for name, each in self._sums.items()})
 
     def _end(self) -> None:
@@ -89,7 +89,7 @@ class ArrayWriter:
 
 
 def digest(arrays: Mapping[str, NDArray[Any]]) -> str:
-    """SHA-256 over names, types, shapes and bytes of arrays, any shape; does not depend on their order."""
+    """SHA-256 of the names, types, shapes and bytes of arrays of any shape; their order does not matter."""
     sums = {}
     for name, array in arrays.items():
         each = _sum_of(array.dtype, array.shape)
@@ -101,14 +101,14 @@ def digest(arrays: Mapping[str, NDArray[Any]]) -> str:
 
 
 def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
-    """The arrays of an npz file as `ArrayWriter` and `numpy.savez` write it, by name, any shape.
+    """Reads the arrays of an npz file written by `ArrayWriter` or `numpy.savez`, by name, any shape.
 
-    Those at places that suit their type are not read now: they are views of the file, which must not change while they
-    are in use. So a file may be larger than memory.
+    Arrays that are aligned for their type are views of the file, which must not change while they are in use. A file
+    may therefore be larger than memory.
 
     Raises:
-        ValueError: the file holds anything but plain numbers, or more than it could.
-        Exception: the file is missing or damaged: whatever reading it raises.
+        ValueError: The file contains anything but plain numbers, or declares more data than it has.
+        Exception: The file is missing or damaged; any error that reading raises is passed on.
     """
     members: dict[str, NDArray[Any]] = {}
     with zipfile.ZipFile(path) as archive:
@@ -121,7 +121,7 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
         damaged = archive.testzip()
         if damaged is not None:
             raise ValueError(f"{damaged} is damaged")
-        # Windows removes no file that is mapped, and a run removes its old checkpoints.
+        # Windows cannot remove a mapped file, and a run removes its old checkpoints.
         file = np.fromfile(path, np.uint8) if os.name == "nt" else np.asarray(np.memmap(path, np.uint8, "r"))
         file.setflags(write=False)
         for entry in entries:

@@ -1,4 +1,4 @@
-"""Writes files so that each is either complete or not there."""
+"""Writes files atomically."""
 
 import errno
 import os
@@ -13,18 +13,22 @@ _NO_UNNAMED = (errno.EOPNOTSUPP, errno.EISDIR, errno.EINVAL)
 """Errors of file systems that do not support files without a name."""
 _OWN = "/proc/self/fd"
 _BUSY_SECONDS = 2.0 if os.name == "nt" else 0.0
-"""How long a file may be read by others before it is replaced, or be replaced before it is read: Windows refuses both
-for as long [s]."""
+"""Longest wait to replace a file that others are reading, or to read one that is being replaced; Windows refuses both
+in the meantime [s]."""
 
 
 def write_atomically(path: Path, write: Callable[[BinaryIO], object]) -> None:
     """Writes a file so that a reader sees the old content or the new, never a mix, even after a crash.
 
-    If the file system allows it, the file has no name while it is written: a process that is killed leaves nothing
-    behind. Several processes may write the same file; the content of the last one stays.
+    If the file system allows it, the file has no name while it is written, so a process that is killed leaves nothing
+    behind. Several processes may write the same file; the last content remains.
+
+    Args:
+        path: Path of the file.
+        write: Writes the content to an open file.
 
     Raises:
-        OSError: as the file system raises it; `path` is then as before, and no other file is left.
+        OSError: The file system raised it; `path` is then unchanged, and no other file is left.
     """
     temporary = path.with_name(f".{path.name}.{os.getpid()}-{secrets.token_hex(4)}.tmp")
     try:
@@ -43,7 +47,7 @@ def write_atomically(path: Path, write: Callable[[BinaryIO], object]) -> None:
 
 
 def _create(temporary: Path) -> int:
-    """Opens a new file: without a name if possible, else with this one."""
+    """Opens a new file: without a name if possible, otherwise with this name."""
     if hasattr(os, "O_TMPFILE") and os.path.isdir(_OWN):
         try:
             return os.open(temporary.parent, os.O_TMPFILE | os.O_RDWR, 0o666)
@@ -55,17 +59,17 @@ def _create(temporary: Path) -> int:
 
 def _give_name(descriptor: int, path: Path) -> None:
     folder = os.open(path.parent, os.O_RDONLY)
-    try:  # Python asks the system to follow the link in /proc only if it gets a folder's descriptor
+    try:  # Python asks the system to follow the link in /proc only if given a folder's descriptor
         os.link(f"{_OWN}/{descriptor}", path.name, src_dir_fd=folder, dst_dir_fd=folder, follow_symlinks=True)
     finally:
         os.close(folder)
 
 
 def read_whole(path: Path) -> bytes:
-    """The content of a file that `write_atomically` may replace at any time, in one read.
+    """Reads the whole content of a file that `write_atomically` may replace at any time.
 
     Raises:
-        OSError: as the file system raises it.
+        OSError: The file cannot be read.
     """
     return _patiently(path.read_bytes)
 
@@ -82,7 +86,7 @@ def _patiently(call: Callable[[], Any]) -> Any:
 
 
 def _sync_folder(folder: Path) -> None:
-    if os.name != "posix":  # other systems cannot open a folder to sync it
+    if os.name != "posix":  # other systems cannot open folders
         return
     descriptor = os.open(folder, os.O_RDONLY)
     try:

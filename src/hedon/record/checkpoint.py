@@ -1,4 +1,4 @@
-"""Checkpoints of a run: plain NumPy arrays without pickle, with a digest of their content. Loading runs no code."""
+"""Checkpoints of a run: plain NumPy arrays without pickle, with a digest of their content. Loading executes no code."""
 
 import json
 from collections.abc import Callable
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
 KEPT = 2
-"""Checkpoints that a run keeps: the newest, and one more in case the newest is damaged."""
-# The members that are not arrays of a world: JSON, and SHA-256 of all others.
+"""Number of checkpoints that a run keeps: the newest, and one more in case the newest is damaged."""
+# Members of the file that are not arrays of a world: JSON, and the SHA-256 of all other members.
 _HEAD, _DIGEST = "head", "sha256"
 
 Fill = Callable[[ArrayWriter], object]
@@ -29,7 +29,7 @@ Fill = Callable[[ArrayWriter], object]
 
 @dataclass(frozen=True)
 class Sampled:
-    """The counters of a world at the last row of the table `population`; the next row counts from them."""
+    """The counters of a world at the last row of the table `population`, from which the next row counts."""
 
     step: int
     counters: dict[str, int | float]
@@ -38,19 +38,20 @@ class Sampled:
 
 @dataclass(frozen=True)
 class CheckpointHead:
-    """The data of a checkpoint besides the arrays of its worlds.
+    """The data of a checkpoint without the arrays of its worlds.
 
     Attributes:
-        step: steps completed [step].
-        config: the complete config, as TOML.
-        seeds: one per world.
-        backend: what computed: an instruction set, or a device.
-        hedon_version: the version that made it.
-        frames: steps between two frames; 0 for none [step].
-        run_seconds: time spent on steps so far [s].
-        sampled: one per world and species.
+        step: Steps completed [step].
+        config: The complete config, as TOML.
+        seeds: Seed of each world.
+        backend: Instruction set or device that computed the worlds.
+        hedon_version: Version of hedon that wrote the checkpoint.
+        frames: Steps between two frames; 0 for none [step].
+        run_seconds: Time spent on steps so far [s].
+        sampled: Counters of each world and species.
         digests: `World.digest()` of each world.
-        parts: SHA-256 of each part that was on disk, in order, by table. They hold all rows up to here, none later.
+        parts: SHA-256 of each part on disk, in order, by table. The parts contain all rows up to this step, and no
+            later ones.
     """
 
     step: int
@@ -70,24 +71,30 @@ class Checkpoint:
     """A moment of a run, from which it can continue.
 
     Attributes:
-        head: what is known of the worlds without their arrays.
-        arrays: of all worlds, in the engine's shapes: "0/params" is its array `params` of world 0. Views of the file.
+        head: Data of the checkpoint without arrays.
+        arrays: Arrays of all worlds as views of the file, in the engine's shapes: "0/params" is the array `params` of
+            world 0.
     """
 
     head: CheckpointHead
     arrays: dict[str, NDArray[Any]]
 
     def world(self, index: int) -> dict[str, NDArray[Any]]:
-        """The arrays of one world, as the engine names and shapes them."""
+        """The arrays of one world, with the engine's names and shapes."""
         prefix = f"{index}/"
         return {name.removeprefix(prefix): array for name, array in self.arrays.items() if name.startswith(prefix)}
 
 
 def save_checkpoint(folder: Path, head: CheckpointHead, fill: Fill) -> None:
-    """Writes a checkpoint of a run atomically, then removes all but the newest ones.
+    """Writes a checkpoint of a run atomically, then removes all but the newest checkpoints.
+
+    Args:
+        folder: Folder of the run.
+        head: Data of the checkpoint without arrays.
+        fill: Writes the arrays.
 
     Raises:
-        OSError: as the file system raises it; the earlier checkpoints are then unchanged.
+        OSError: The file system raised it; the earlier checkpoints are then unchanged.
     """
     write_checkpoint(checkpoint_path(folder, head.step), head, fill)
     for old in checkpoint_paths(folder)[:-KEPT]:
@@ -95,10 +102,15 @@ def save_checkpoint(folder: Path, head: CheckpointHead, fill: Fill) -> None:
 
 
 def write_checkpoint(path: Path, head: CheckpointHead, fill: Fill) -> None:
-    """Writes one checkpoint atomically; makes its folder if it is missing.
+    """Writes one checkpoint atomically, and creates its folder if necessary.
+
+    Args:
+        path: Path of the checkpoint.
+        head: Data of the checkpoint without arrays.
+        fill: Writes the arrays.
 
     Raises:
-        OSError: as the file system raises it.
+        OSError: The checkpoint cannot be written.
     """
     path.parent.mkdir(exist_ok=True)
 
@@ -112,11 +124,12 @@ def write_checkpoint(path: Path, head: CheckpointHead, fill: Fill) -> None:
 
 
 def load_checkpoint(path: Path) -> Checkpoint:
-    """Reads a checkpoint, which may come from anyone. Checks that its content was not changed since it was written;
-    whether the arrays are valid, the engine checks.
+    """Reads a checkpoint, which may be from an untrusted source.
+
+    Checks that the content was not changed since it was written. The engine checks whether the arrays are valid.
 
     Raises:
-        RecordError: the file cannot be read, is damaged, or is not a checkpoint.
+        RecordError: The file cannot be read, is damaged, or is not a checkpoint.
     """
     try:
         members = read_arrays(path)

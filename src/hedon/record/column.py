@@ -1,4 +1,4 @@
-"""Columns and tables: the types that the schema uses."""
+"""The types of the schema: columns and tables."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -16,7 +16,7 @@ NUMPY_TYPES: dict[str, type[np.generic]] = {
     "f64": np.float64,
 }
 MOST_TURN = 1e9
-"""No body turns so far in a run [rad]: a heading beyond it is damage, and no figure could be drawn with it."""
+"""Largest valid heading [rad]. No body turns this far in a run; larger values mean damage and cannot be drawn."""
 
 
 @dataclass(frozen=True)
@@ -24,13 +24,13 @@ class Column:
     """One column of a table.
 
     Attributes:
-        name: as in the files.
+        name: Name in the files.
         dtype: "i32", "i64", "f32", "f64" or "string".
-        unit: "1" for counts and pure numbers.
-        meaning: one phrase.
-        nullable: whether a value may be missing; pass −1 (integers) or NaN (floats) to the writer for such a value.
-        choices: the values that a string may have.
-        missing_for: the kinds (column `kind`) whose rows have no value, and no others; None where it is not known.
+        unit: Unit; "1" for counts and pure numbers.
+        meaning: Description, as a phrase.
+        nullable: Whether values may be missing; the writer takes −1 (integers) or NaN (floats) for a missing value.
+        choices: The values that a string may have.
+        missing_for: The kinds (column `kind`) whose rows have no value, while all others have one; None if unknown.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Table:
 
     @property
     def polars_schema(self) -> "dict[str, type[pl.DataType]]":
-        """The columns as Polars writes them, in order."""
-        import polars as pl  # a world in memory needs no tables
+        """The columns with their Polars types, in order."""
+        import polars as pl  # not needed for worlds in memory
 
         return {column.name: getattr(pl, POLARS_TYPES[column.dtype]) for column in self.columns}

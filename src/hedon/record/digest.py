@@ -1,4 +1,4 @@
-"""A digest of the records of a run: equal for equal rows, no matter how parts and sessions divide them."""
+"""A digest of the records of a run: equal for equal rows, however they are divided into parts and sessions."""
 
 import hashlib
 from pathlib import Path
@@ -12,17 +12,22 @@ from hedon.record.part import load_part
 from hedon.record.schema import Columns, run_tables
 
 PARTS_AT_ONCE = 64
-"""Parts that are in memory together: at most about 100 MB."""
+"""Number of parts in memory at a time, which take about 100 MB at most."""
 
 
 def records_digest(folder: Path, columns: Columns) -> str:
     """The digest of all tables of a run: SHA-256, 64 hexadecimal digits.
 
-    The rows of each world count in the order in which they were written, which is the same in every repetition of a
-    run. The order of rows of different worlds, and the ends of parts, can differ between repetitions and do not count.
+    The digest depends on the order in which the rows of each world were written, which is the same in every repetition
+    of a run. It does not depend on the order of rows of different worlds or on the boundaries of parts, which can
+    differ between repetitions.
+
+    Args:
+        folder: Folder of the run.
+        columns: Columns of its tables.
 
     Raises:
-        RecordError: a part cannot be read.
+        RecordError: A part cannot be read.
     """
     digest = hashlib.sha256()
     for name, table in run_tables(columns).items():
@@ -45,7 +50,7 @@ def _digest_worlds(paths: list[Path], table: Table) -> dict[int, str]:
 
 
 def _row_bytes(rows: pl.DataFrame, table: Table) -> np.ndarray:
-    """Each row as bytes, (rows, bytes): the value of each column; a nullable one after a byte that is 1 if missing."""
+    """Each row as bytes, (rows, bytes): the column values, nullable ones after a byte that is 1 if missing."""
     columns = []
     for column in table.columns:
         series = rows[column.name]

@@ -1,4 +1,4 @@
-"""The error of this part."""
+"""The errors that this package raises."""
 
 from pathlib import Path
 
@@ -6,18 +6,18 @@ from hedon.error import HedonError
 
 
 class RecordError(HedonError):
-    """A record cannot be written or read. The message names the file or column and says what to do."""
+    """A record cannot be written or read. The message names the file or column, and gives a remedy."""
 
 
 class InUseError(RecordError):
-    """A folder that another process has locked.
+    """The folder is locked by another process.
 
     Args:
-        folder: of the run.
-        owner: who has locked it, as text to follow "by another run"; may be empty.
+        folder: Folder of the run.
+        owner: Description of the owner, as text to follow "by another run"; may be empty.
 
     Attributes:
-        owner: what is known of the process, in brackets after a space; empty if nothing is.
+        owner: Description of the process, in brackets after a space; empty if unknown.
     """
 
     def __init__(self, folder: Path, owner: str) -> None:

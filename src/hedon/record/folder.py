@@ -1,4 +1,4 @@
-"""The paths of the files of a run."""
+"""The paths of a run's files."""
 
 import os
 from pathlib import Path
@@ -13,7 +13,7 @@ SUMMARY = "summary.json"
 FIGURES = "figures"
 LIVING = "agents/living.parquet"
 PARTS_BEFORE = "parts"
-"""Metadata of the file of the living: how many parts hold the agents that died before it was written."""
+"""Metadata key in the file of the living: the number of parts with agents that died before it was written."""
 CHECKPOINTS = "checkpoints"
 FAULT = "fault"
 LOCK = ".lock"
@@ -23,10 +23,10 @@ TABLE_FOLDERS = ("agents", "population", "frames")
 
 
 def require_unicode(folder: Path) -> None:
-    """Refuses a folder whose name is not UTF-8: tables could be written there, but not read.
+    """Refuses a folder whose name is not UTF-8, since tables could be written there but not read.
 
     Raises:
-        RecordError: its name is not UTF-8.
+        RecordError: The name is not UTF-8.
     """
     try:
         str(folder).encode()
@@ -36,12 +36,12 @@ def require_unicode(folder: Path) -> None:
 
 
 def require_plain(folder: Path) -> None:
-    """Refuses a run's folder that holds anything but files and folders: a symbolic link could lead out of it.
+    """Refuses a run's folder that contains anything but files and folders, since a symbolic link could lead out of it.
 
     The folder itself may be a link, and need not exist.
 
     Raises:
-        RecordError: there is such an entry; the message names the first.
+        RecordError: There is such an entry; the message names the first one.
     """
     places = [folder]
     while places:
@@ -56,15 +56,15 @@ def require_plain(folder: Path) -> None:
                             f"{entry.path} is {kind}: hedon follows no links inside a run's folder; replace it by a "
                             "copy of what it points to, or remove it"
                         )
-        except OSError:  # missing or unreadable: the code that reads or writes it reports that
+        except OSError:  # missing or unreadable; reported by the code that reads or writes it
             continue
 
 
 def holds_run(folder: Path) -> bool:
-    """Whether a folder holds a run.
+    """Whether a folder contains a run.
 
-    When a run begins, its manifest is written last. Empty tables without a manifest are from a run that was killed
-    before it began, and hold nothing.
+    When a run starts, its manifest is written last. Empty tables without a manifest come from a run that was killed
+    before it started.
     """
     if (folder / MANIFEST).exists():
         return True
@@ -75,10 +75,10 @@ def holds_run(folder: Path) -> bool:
 
 
 def require_no_run(folder: Path) -> None:
-    """Refuses a folder for a new run if it already holds a run.
+    """Refuses a folder for a new run if it already contains one.
 
     Raises:
-        RecordError: it holds a run.
+        RecordError: The folder contains a run.
     """
     if holds_run(folder):
         raise RecordError(
@@ -101,18 +101,18 @@ def checkpoint_path(folder: Path, step: int, place: str = CHECKPOINTS) -> Path:
     """The path of the checkpoint after this number of steps.
 
     Args:
-        folder: of the run.
-        step: completed [step].
-        place: `CHECKPOINTS`, or `FAULT` for that of a run that stopped at a fault.
+        folder: Folder of the run.
+        step: Steps completed [step].
+        place: `CHECKPOINTS`, or `FAULT` for the state of a run that stopped at a fault.
     """
     return folder / place / f"step-{step:010d}.npz"
 
 
 def misplaced_checkpoints(folder: Path) -> list[Path]:
-    """Folders with the name of a checkpoint. Hedon does not make such folders and does not change them."""
+    """Folders that have the name of a checkpoint. hedon neither creates nor changes such folders."""
     return sorted(path for path in (folder / CHECKPOINTS).glob("step-??????????.npz") if path.is_dir())
 
 
 def checkpoint_paths(folder: Path, place: str = CHECKPOINTS) -> list[Path]:
-    """The checkpoints of a run, by step."""
+    """The paths of a run's checkpoints, sorted by step."""
     return sorted(path for path in (folder / place).glob("step-??????????.npz") if path.is_file())

@@ -1,8 +1,9 @@
-"""Tables of founders: whose genes the worlds of a run begin with, and which founder gets which row.
+"""Tables of founders: the genomes with which the worlds of a run start, and which founder gets which row.
 
-A table has one row per genome and a column for each gene that it gives; other genes are drawn from the config's laws.
-The column `group` tells competitors apart, and `share` is the part of the founders that comes from a group. The run's
-folder holds the table as `founders.csv`, and the config its digest, so that a run can be repeated and checked.
+A table has one row per genome and a column for each gene that it specifies; other genes are drawn from the config's
+distributions. The column `group` distinguishes competitors, and `share` is the part of the founders from a group. The
+table is stored in the run's folder as `founders.csv`, and its digest in the config, so that a run can be repeated and
+checked.
 """
 
 import csv
@@ -29,18 +30,18 @@ GROUP, SHARE = "group", "share"
 
 
 class FounderError(HedonError):
-    """Founders that cannot be used."""
+    """A specification of founders cannot be used."""
 
 
 @dataclass(frozen=True, eq=False)
 class Founders:
-    """Genomes to begin with.
+    """A table of genomes for founders.
 
     Attributes:
-        genes: columns of the genome that the table gives.
-        values: (rows, genes) float32; NaN where a gene is drawn from the config's law.
-        group: of each row.
-        share: of each group among the founders of a world; they sum to 1. The groups are in the order of the table.
+        genes: Genome columns that the table specifies.
+        values: Genomes, shape (rows, genes), float32; NaN for a gene that is drawn from the config's distribution.
+        group: Group of each row.
+        share: Share of each group among the founders of a world, in the order of the table; they sum to 1.
     """
 
     genes: tuple[str, ...]
@@ -65,14 +66,14 @@ class Founders:
         return hashlib.sha256(self.content).hexdigest()
 
     def draw(self, seed: int, count: int) -> NDArray[np.int64]:
-        """Which row each founder of a world gets, (count,).
+        """The row of the table that each founder of a world gets, shape (count,).
 
-        Each group gets its share of the founders, rounded so that the sum is right. Within a group rows are taken in an
-        order that depends on the seed; a group with fewer rows than founders gives each row several times.
+        Each group gets its share of the founders, rounded so that the sum is right. Within a group, rows are taken in
+        an order that depends on the seed; if a group has fewer rows than founders, rows are repeated.
 
         Args:
-            seed: of the world.
-            count: of founders.
+            seed: Seed of the world.
+            count: Number of founders.
         """
         exact = {group: share * count for group, share in self.share.items()}
         number = {group: math.floor(part) for group, part in exact.items()}
@@ -91,18 +92,18 @@ class Founders:
         """The group of each founder of a world, by agent_id.
 
         Args:
-            seed: of the world.
-            count: of founders.
+            seed: Seed of the world.
+            count: Number of founders.
         """
         return [self.group[row] for row in self.draw(seed, count)]
 
     def genomes(self, seed: int, count: int, names: Sequence[str]) -> NDArray[np.float32]:
-        """The genes of each founder of a world, (count, names); NaN where a gene is not given.
+        """The genes of each founder of a world, shape (count, names); NaN for genes that the table does not specify.
 
         Args:
-            seed: of the world.
-            count: founders.
-            names: the genome's columns; what the table gives beside them is for another species.
+            seed: Seed of the world.
+            count: Number of founders.
+            names: Genome columns; further columns of the table belong to other species.
         """
         found = np.full((count, len(names)), np.nan, np.float32)
         rows = self.draw(seed, count)
@@ -112,40 +113,40 @@ class Founders:
         return found
 
     def of_species(self, name: str) -> "Founders":
-        """The genes for one species: those that name it, as in `prey.w_action`, and those that name none."""
+        """The table for one species: genes that name it, as in `prey.w_action`, and genes that name no species."""
         mine = [i for i, gene in enumerate(self.genes) if "." not in gene or gene.startswith(f"{name}.")]
         genes = tuple(self.genes[i].removeprefix(f"{name}.") for i in mine)
         return replace(self, genes=genes, values=self.values[:, mine])
 
     def only_for(self, name: str) -> "Founders":
-        """The genes for one species, each of which names it, as in `prey.w_action`.
+        """The table for one species, with the species in all names of genes, as in `prey.w_action`.
 
         Args:
-            name: of the species.
+            name: Name of the species.
         """
         mine = self.of_species(name)
         return replace(mine, genes=tuple(f"{name}.{gene}" for gene in mine.genes))
 
     def changed(self, gene: str, value: float) -> "Founders":
-        """The same table with one gene, which it must have, at one value.
+        """A copy of the table in which one gene has the same value in all rows.
 
         Args:
-            gene: its column.
-            value: for all rows.
+            gene: Column of the gene, which the table must have.
+            value: Its value.
         """
         values = self.values.copy()
         values[:, self.genes.index(gene)] = value
         return replace(self, values=values)
 
     def require(self, config: Config, origin: str = "founders") -> None:
-        """Checks that the genes are those of a config, and within its limit.
+        """Checks that a config has all genes of the table, and that their values are within its limits.
 
         Args:
-            config: that the founders are for.
-            origin: what errors call the table.
+            config: Config of the worlds that the founders are for.
+            origin: Name of the table in error messages.
 
         Raises:
-            FounderError: One is not.
+            FounderError: A gene is unknown, or a value is beyond its limit.
         """
         for gene in self.genes:
             if column_of(config, gene) != gene:
@@ -166,10 +167,10 @@ def make_founders(
     """Makes a table from genomes.
 
     Args:
-        genes: columns.
-        values: genomes, (rows, genes); NaN for a gene that is drawn from the config's law.
-        group: of each row.
-        share: of each group among the founders; None for shares by the groups' rows.
+        genes: Genome columns.
+        values: Genomes, shape (rows, genes); NaN for a gene that is drawn from the config's distribution.
+        group: Group of each row.
+        share: Relative share of each group among the founders; None for shares in proportion to the groups' rows.
     """
     weights = dict(share) if share is not None else dict(Counter(group))
     total = math.fsum(weights.values())
@@ -178,7 +179,13 @@ def make_founders(
 
 
 def join(tables: Sequence[Founders], labels: Sequence[str], shares: Sequence[float]) -> Founders:
-    """One table from several, each of which becomes one group; a gene that one lacks is drawn from the config's law."""
+    """Joins tables into one, in which each becomes a group; genes that a table lacks are drawn from distributions.
+
+    Args:
+        tables: The tables to join.
+        labels: Name of the group for each table.
+        shares: Relative share of each table among the founders.
+    """
     genes = tuple(dict.fromkeys(gene for table in tables for gene in table.genes))
     values, group = [], []
     for table, label in zip(tables, labels, strict=True):
@@ -191,10 +198,15 @@ def join(tables: Sequence[Founders], labels: Sequence[str], shares: Sequence[flo
 
 
 def column_of(config: Config, name: str, own: str | None = None) -> str | None:
-    """The column of a gene that is named by its column, its kind of food, or `action`; None if there is no such gene.
+    """The column of a gene that is given by its column, its food kind, or `action`; None if there is no such gene.
 
-    `food` is the first kind, unless a kind has this name. A gene of only one species begins with the name of the
-    species, as in `prey.action`.
+    `food` stands for the first kind, unless a kind has this name. A gene of only one species starts with the name of
+    the species, as in `prey.action`.
+
+    Args:
+        config: Config that has the gene.
+        name: Name of the gene.
+        own: Species to which the gene must belong; None for any.
     """
     species, dot, gene = name.rpartition(".")
     if dot:
@@ -208,7 +220,13 @@ def _column_among(columns: Sequence[str], name: str) -> str | None:
 
 
 def unknown_gene(config: Config, name: str, own: str | None = None) -> str:
-    """Says that there is no such gene, which there are, and which is near."""
+    """The error message for an unknown gene, with the existing genes and the most similar one.
+
+    Args:
+        config: Config that lacks the gene.
+        name: The unknown name.
+        own: Species to which the gene should belong; None for any.
+    """
     species, dot, gene = name.rpartition(".")
     begin = f"{species}." if dot and species in config.species else ""
     own = species if begin else own
@@ -223,5 +241,5 @@ def unknown_gene(config: Config, name: str, own: str | None = None) -> str:
 
 
 def _shuffled(items: Sequence[int], what: str) -> list[int]:
-    """Items in an order that depends on a text alone, the same with every version of every library."""
+    """Items in an order that depends only on a text, and on no version of any library."""
     return sorted(items, key=lambda item: hashlib.sha256(f"{what} {item}".encode()).digest())

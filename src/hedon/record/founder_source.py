@@ -1,4 +1,4 @@
-"""Where founders come from: a table, those alive at some step of a run, a point, or a mixture of these."""
+"""Sources of founders: a table, the agents alive at a step of a run, a point, or a mixture of these."""
 
 import re
 from pathlib import Path
@@ -20,10 +20,14 @@ _HELP = "give a table (.csv), RUN@STEP, the folder of a run, or a point such as 
 
 
 def read_founders(text: str, config: Config) -> Founders:
-    """Founders from a source, or from several with shares.
+    """Reads founders from one source, or from several with shares.
+
+    Args:
+        text: The sources, as for `--founders`.
+        config: Config of the worlds that the founders are for.
 
     Raises:
-        FounderError: A source is none, or cannot be used; the message says why.
+        FounderError: A source does not exist or cannot be used; the message gives the reason.
         RecordError: A run cannot be read.
     """
     parts = _parts(text)
@@ -41,10 +45,14 @@ def read_founders(text: str, config: Config) -> Founders:
 
 
 def read_source(text: str, config: Config) -> Founders:
-    """Founders from one source; see `read_founders`.
+    """Reads founders from one source; see `read_founders`.
+
+    Args:
+        text: The source: a CSV file, genes and their values, or a run's folder with an optional "@step".
+        config: Config of the worlds that the founders are for.
 
     Raises:
-        FounderError: There is no such source, or it does not fit the config.
+        FounderError: The source does not exist, or does not fit the config.
         RecordError: A run cannot be read.
     """
     if text.endswith(".csv"):
@@ -60,20 +68,20 @@ def read_source(text: str, config: Config) -> Founders:
 
 
 def living(folder: Path, step: int | None, config: Config) -> Founders:
-    """The genomes of those alive after a step of a run, or at its end, from its table of agents.
+    """The genomes of the agents alive after a step of a run, or at its end, from its table of agents.
 
-    Where the run has several species, each gives its genes to the species of the same name; a species of which nobody
-    lives, or that the run lacks, is drawn from the config's laws. Neutral genes that the config has no room for are
-    left out; those that the run lacks are drawn from its laws.
+    If the run has several species, each provides the genes of the species with the same name. Species that were extinct
+    by then, or that the run lacks, are drawn from the config's distributions. Neutral genes that the config does
+    not have are left out; those that the run lacks are drawn from its distributions.
 
     Args:
-        folder: of the run.
-        step: after which [step]; None for the end of the run.
-        config: that the founders are for.
+        folder: Folder of the run.
+        step: Completed steps after which the agents are taken [step]; None for the end of the run.
+        config: Config of the worlds that the founders are for.
 
     Raises:
-        FounderError: Nobody lived then, the run has not come so far, or it has a gene that the config lacks.
-        RecordError: It is not a run, or cannot be read.
+        FounderError: No agent was alive then, the run did not get that far, or it has a gene that the config lacks.
+        RecordError: The folder is not a run, or cannot be read.
     """
     if not folder.exists():
         raise FounderError(f"founders {brief(str(folder))!r}: there is no such file or folder: {_HELP}")
@@ -98,7 +106,7 @@ def living(folder: Path, step: int | None, config: Config) -> Founders:
 
 
 def _genomes(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], NDArray[np.float64]]:
-    """The genes of a run's agents, and their columns: all that it has, but for neutral genes without room."""
+    """The columns and genes of a run's agents, without neutral genes that the config does not have."""
     for gene in run.reward_names:
         if column_of(config, gene) != gene:
             raise FounderError(f"founders {brief(str(run.path))!r}: {unknown_gene(config, gene)}")
@@ -108,7 +116,7 @@ def _genomes(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], ND
 
 
 def _by_species(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], NDArray[np.float64]]:
-    """The genes of each species that both the run and the config have; each row holds an agent of each of them."""
+    """The columns and genes of the species in both the run and the config; each row has one agent of each species."""
     shared = [name for name in run.columns.species if name in config.species]
     if not shared:
         known = f"{', '.join(config.species)} here"
@@ -128,12 +136,19 @@ def _by_species(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str],
 
 
 def source_label(text: str) -> str:
-    """What a source's group is called: without the folders above it."""
+    """The name of a source's group: the source without its parent folders."""
     return text if "=" in text else Path(text).name or text
 
 
 def parse_point(text: str, config: Config) -> dict[str, float]:
-    """Genes and their values from a text such as "food=5,action=0", by column.
+    """Parses genes and their values from a text such as "food=5,action=0".
+
+    Args:
+        text: Genes with their values.
+        config: Config that has the genes.
+
+    Returns:
+        The values by genome column.
 
     Raises:
         FounderError: A gene is unknown or given twice, or a value is not allowed.
@@ -163,7 +178,7 @@ def _point(text: str, config: Config) -> Founders:
 
 
 def _parts(text: str) -> list[tuple[str, float | None]]:
-    """Sources with their shares. Commas join sources, and the genes of a point."""
+    """Sources with their shares. Commas separate sources, and also the genes of a point."""
     found: list[tuple[str, float | None]] = []
     for item in map(str.strip, text.split(",")):
         share = _SHARE.search(item)

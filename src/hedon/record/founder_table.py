@@ -1,4 +1,4 @@
-"""Reads tables of founders, which may come from anyone."""
+"""Reads tables of founders, which may be from an untrusted source."""
 
 import csv
 import io
@@ -14,15 +14,19 @@ from hedon.record.founder import FOUNDERS, GROUP, SHARE, FounderError, Founders,
 from hedon.text import brief
 
 MAX_ROWS = 100_000
-"""Most rows of a table."""
+"""Largest number of rows of a table."""
 MAX_BYTES = 100_000_000
 
 
 def read_table(path: Path, config: Config) -> Founders:
     """Reads a table of founders from a CSV file.
 
+    Args:
+        path: Path of the CSV file.
+        config: Config of the worlds that the founders are for.
+
     Raises:
-        FounderError: The table cannot be used; the message gives the place, the value and what is allowed.
+        FounderError: The table cannot be used; the message gives the place, the value and the allowed values.
     """
     origin = brief(str(path))
     try:
@@ -65,7 +69,11 @@ def read_table(path: Path, config: Config) -> Founders:
 
 
 def load_founders(folder: Path, config: Config) -> Founders | None:
-    """The table of a run, from its folder; None if its founders are drawn from the config's laws.
+    """Reads the table of founders of a run; None if founders are drawn from the config's distributions.
+
+    Args:
+        folder: Folder of the run.
+        config: Config of the run, with the digest of the table.
 
     Raises:
         FounderError: The table is missing or was changed.
@@ -79,7 +87,7 @@ def load_founders(folder: Path, config: Config) -> Founders | None:
 
 
 def _columns(head: Sequence[str], config: Config, origin: str) -> dict[str, str]:
-    """The column of the genome for each column of genes in a table."""
+    """The genome column for each gene column of a table."""
     genes: dict[str, str] = {}
     for name in head:
         if name in (GROUP, SHARE):

@@ -1,4 +1,4 @@
-"""Tables as labelled arrays of xarray: values over seeds, factors and time instead of rows."""
+"""Converts tables to labelled xarray arrays: values over seeds, factors and time instead of rows."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -15,19 +15,19 @@ if TYPE_CHECKING:
 def to_xarray(
     rows: pl.DataFrame, dims: Sequence[str], attributes: Mapping[str, Mapping[str, str]] | None = None
 ) -> "xarray.Dataset":
-    """A table as a dataset whose dimensions are some of its columns, as those of a sweep: its factors and the seed.
+    """A table as a dataset whose dimensions are some of its columns, such as the factors and the seed of a sweep.
 
     Args:
-        rows: with one row at most for each combination of values of the dimensions.
-        dims: columns that become dimensions, with their values in order as labels; all others become variables.
-        attributes: of variables, by name, such as units.
+        rows: The table, with one row at most for each combination of values of the dimensions.
+        dims: Columns that become dimensions, labeled with their sorted values; all other columns become variables.
+        attributes: Attributes of variables, such as units, by name of the variable.
 
     Returns:
         Variables of shape (labels of the first dimension, of the second, …): numbers as floats, texts as objects; NaN
-        where there is no row or no value.
+        if there is no row or no value.
 
     Raises:
-        ArgumentError: a dimension is no column, a combination appears twice, or xarray is not installed.
+        ArgumentError: A dimension is not a column, a combination appears twice, or xarray is not installed.
     """
     try:
         import xarray as xr

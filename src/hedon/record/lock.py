@@ -1,4 +1,4 @@
-"""Locks on folders. The operating system releases a lock when its process ends, in whatever way it ends."""
+"""Locks on folders. The operating system releases a lock when its process ends, however it ends."""
 
 import errno
 import hashlib
@@ -18,16 +18,16 @@ from hedon.record.folder import LOCK, require_plain, require_unicode
 
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
-"""Errors of file systems without locks: there, only the user can prevent two runs in one folder."""
+"""Errors of file systems without locks, on which only the user can prevent two runs in one folder."""
 
 if sys.platform == "win32":
     import msvcrt
 
     _BEYOND = 1 << 30
-    """A byte far behind the end of the file: nobody can read what is locked [byte]."""
+    """Position of the locked byte, far beyond the end of the file, since locked bytes cannot be read [byte]."""
     _LOOK_SECONDS = 0.05
     _TAKEN = (errno.EACCES, errno.EDEADLK, 0)
-    """What is said of a byte that another has locked; Wine says 0."""
+    """Errors for a byte that another process has locked; Wine gives 0."""
 
     def _take(descriptor: int, wait: bool) -> None:
         while True:
@@ -43,7 +43,7 @@ if sys.platform == "win32":
             time.sleep(_LOOK_SECONDS)
 
     def _open_writer(folder: Path) -> int:
-        """Of a file elsewhere that stands for the folder, which Windows does not open."""
+        """Opens a file elsewhere that represents the folder, since Windows cannot open folders."""
         name = hashlib.sha256(str(folder.resolve()).encode()).hexdigest()[:32]
         return os.open(Path(tempfile.gettempdir()) / f"hedon-{name}.lock", os.O_RDWR | os.O_CREAT)
 
@@ -60,14 +60,14 @@ else:
 class FolderLock:
     """Locks a run's folder for this process. Use it as a context manager.
 
-    The lock ends with its process, and hinders nobody to read. The lock file stays and says which process had it last.
+    The lock ends with its process and does not prevent reading. The lock file remains and names its last owner.
 
     Args:
-        folder: made if it does not exist.
+        folder: The folder to lock, which is created if it does not exist.
 
     Raises:
-        InUseError: another process has the lock.
-        RecordError: the folder cannot be written or holds a symbolic link, or its name is not UTF-8.
+        InUseError: Another process has the lock.
+        RecordError: The folder cannot be written or contains a symbolic link, or its name is not UTF-8.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -102,12 +102,16 @@ class FolderLock:
 
 @contextmanager
 def one_writer(folder: Path, what: str) -> Iterator[None]:
-    """Makes a folder and lets one process at a time write into it; the others wait.
+    """Creates a folder and lets one process at a time write to it; other processes wait.
 
-    No file is left in it.
+    The lock leaves no file in the folder.
+
+    Args:
+        folder: The folder to write to.
+        what: Name of the written content, for the error message.
 
     Raises:
-        RecordError: what is written within cannot be, for whatever reason the file system gives.
+        RecordError: The file system raised an error within the context.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -134,5 +138,5 @@ def _read_owner(descriptor: int) -> str:
         os.lseek(descriptor, 0, os.SEEK_SET)
         owner = json.loads(os.read(descriptor, 1000))
         return f" (process {int(owner['process'])} on {owner['host']})"
-    except (OSError, ValueError, KeyError, TypeError):  # its owner has not written it yet
+    except (OSError, ValueError, KeyError, TypeError):  # the owner has not written its name yet
         return ""

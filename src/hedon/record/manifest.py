@@ -1,4 +1,4 @@
-"""The manifest says how a run was made: enough to repeat it, to judge it and to read its tables."""
+"""The manifest: how a run was made, in enough detail to repeat it, to judge it and to read its tables."""
 
 import json
 import re
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
 MAX_COLUMNS = 1000
-"""Most food kinds and neutral genes that a manifest may name; each is a column of the tables."""
+"""Largest number of food kinds and neutral genes in a manifest; each is a column of the tables."""
 MAX_NUMBER = 2**63 - 1
 
 STATUSES = ("running", "finished", "interrupted", "failed")
@@ -26,7 +26,7 @@ STATUSES = ("running", "finished", "interrupted", "failed")
 
 @dataclass(frozen=True)
 class Session:
-    """One session of a run, from a start to an end; a run that was resumed has several.
+    """One session of a run, from start to end; a run that was resumed has several.
 
     Attributes:
         started, ended: ISO 8601, UTC; `ended` is None if the session is still running, or was killed.
@@ -49,14 +49,14 @@ class Session:
 
 @dataclass(frozen=True)
 class RuleSource:
-    """The text of a rule in Python.
+    """The source text of a rule in Python.
 
     Attributes:
-        file: name of the file, as the config of the run gives it.
-        name: of the function.
-        digest: the first 16 hexadecimal digits of the SHA-256 of the text.
-        text: of the whole file.
-        path: where the file was; empty in old manifests.
+        file: Name of the file, as in the config of the run.
+        name: Name of the function.
+        digest: First 16 hexadecimal digits of the SHA-256 of the text.
+        text: Text of the whole file.
+        path: Original path of the file; empty in old manifests.
     """
 
     file: str
@@ -67,13 +67,13 @@ class RuleSource:
 
     @property
     def place(self) -> str:
-        """What a config that is pinned to this text says."""
+        """The value of a config's rule that is pinned to this text."""
         return f"{self.file}:{self.name}@{self.digest}"
 
 
 @dataclass(frozen=True)
 class ChannelNote:
-    """A number of an agent that has a use.
+    """A channel: a number of an agent that is observed, paid for, or used as a gate.
 
     Attributes:
         species: name of the species.
@@ -99,11 +99,11 @@ class Parent:
     """The run that a branch started from.
 
     Attributes:
-        folder: name of the parent's folder.
-        config_digest: digest of the parent's config.
-        step: step of the checkpoint that the branch started from [step].
-        seed: of the parent's world that all worlds of the branch go on from, each with a seed of its own; None if each
-            world goes on with its own past and seed.
+        folder: Name of the parent's folder.
+        config_digest: Digest of the parent's config.
+        step: Step of the checkpoint from which the branch started [step].
+        seed: Seed of the parent's world from which all worlds of the branch continue, each with a new seed; None if
+            each world continues its own past with its own seed.
     """
 
     folder: str
@@ -214,11 +214,11 @@ class Manifest:
 
     @property
     def columns(self) -> Columns:
-        """What the columns of the tables follow from."""
+        """The properties that determine the columns of the tables."""
         return Columns(**{field.name: getattr(self, field.name) for field in fields(Columns)})
 
     def _problems(self) -> Iterator[str]:
-        """What no run can have been, and what tables and figures could not be made with."""
+        """Values that no run has, or from which tables and figures cannot be made."""
         if self.status not in STATUSES:
             yield f"status {brief(repr(self.status))} is not one of {', '.join(STATUSES)}"
         for kind in self.food_kinds:
@@ -245,8 +245,12 @@ class Manifest:
 def save_manifest(folder: Path, manifest: Manifest) -> None:
     """Writes the manifest atomically.
 
+    Args:
+        folder: Folder of the run.
+        manifest: The manifest to write.
+
     Raises:
-        RecordError: it cannot be written.
+        RecordError: It cannot be written.
     """
     text = json.dumps(asdict(manifest), indent=2, ensure_ascii=False) + "\n"
     try:
@@ -256,10 +260,10 @@ def save_manifest(folder: Path, manifest: Manifest) -> None:
 
 
 def load_manifest(folder: Path) -> Manifest:
-    """Reads the manifest of a run. Fields that this version does not know are ignored.
+    """Reads the manifest of a run. Unknown fields are ignored.
 
     Raises:
-        RecordError: there is none, it is damaged, or it is of a newer format.
+        RecordError: There is no manifest, it is damaged, or its format is newer.
     """
     path = folder / MANIFEST
     try:

@@ -1,7 +1,7 @@
-"""Files of networks: what agents that never learn act by.
+"""Files of networks for agents that never learn.
 
-A file holds, for each species, the networks of agents that have learned somewhere, and the names of the inputs that
-they read. The run's folder holds it as `networks.npz`, and the config its digest, so that a run can be repeated and
+For each species, a file contains the networks of agents that have learned elsewhere, and the names of their inputs. It
+is stored in the run's folder as `networks.npz`, and its digest in the config, so that a run can be repeated and
 checked.
 """
 
@@ -25,20 +25,20 @@ from hedon.record.array_file import read_arrays
 from hedon.text import brief
 
 NETWORKS = "networks.npz"
-_INPUTS = ".inputs"  # ends the name of the array that holds the names of a species' inputs, as JSON
+_INPUTS = ".inputs"  # suffix of the array with the names of a species' inputs, as JSON
 
 
 class NetworkError(HedonError):
-    """Networks that cannot be used."""
+    """A file of networks cannot be used."""
 
 
 @dataclass(frozen=True, eq=False)
 class Networks:
-    """Networks to begin with, by species; a world with only one has `agent`.
+    """Networks for founders, by species; a world with only one species calls it `agent`.
 
     Attributes:
-        params: (networks, parameters) float32 of each species, as the engine orders them.
-        inputs: what the networks of each species read, in order; see `hedon.config.layout.observation_columns`.
+        params: Parameters of the networks of each species in the engine's order, shape (networks, parameters), float32.
+        inputs: Inputs of the networks of each species, in order; see `hedon.config.layout.observation_columns`.
     """
 
     params: Mapping[str, NDArray[np.float32]]
@@ -46,13 +46,13 @@ class Networks:
 
     @cached_property
     def content(self) -> bytes:
-        """The file."""
+        """The content of the file."""
         arrays: dict[str, NDArray[Any]] = {}
         for name, params in self.params.items():
             arrays[name] = params
             arrays[name + _INPUTS] = np.frombuffer(json.dumps(self.inputs[name]).encode(), np.uint8)
         file = io.BytesIO()
-        with zipfile.ZipFile(file, "w") as archive:  # not `numpy.savez`, for which some names are arguments
+        with zipfile.ZipFile(file, "w") as archive:  # not `numpy.savez`, which reserves some names for arguments
             for name, array in arrays.items():
                 with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
                     np.lib.format.write_array(member, array, allow_pickle=False)
@@ -64,30 +64,29 @@ class Networks:
         return hashlib.sha256(self.content).hexdigest()
 
     def draw(self, name: str, seed: int, count: int) -> NDArray[np.float32]:
-        """The network of each founder of a species in a world, (count, parameters).
+        """The network of each founder of a species in a world, shape (count, parameters).
 
-        The networks are taken in an order that depends on the seed; where there are fewer than founders, each is taken
-        several times.
+        The networks are taken in an order that depends on the seed; if there are fewer networks than founders, they are
+        repeated.
 
         Args:
-            name: of the species.
-            seed: of the world.
-            count: of founders.
+            name: Name of the species.
+            seed: Seed of the world.
+            count: Number of founders.
         """
         params = self.params[name]
         order = sorted(range(len(params)), key=lambda i: hashlib.sha256(f"network {name} {seed} {i}".encode()).digest())
         return params[np.resize(order, count)]
 
     def require(self, config: Config, origin: str = "networks") -> None:
-        """Checks that there are networks for each species that acts by networks without learning, and that they read
-        what it observes.
+        """Checks that each species that acts with fixed networks has networks whose inputs match its observations.
 
         Args:
-            config: that the networks are for.
-            origin: what errors call the networks.
+            config: Config of the worlds that the networks are for.
+            origin: Name of the networks in error messages.
 
         Raises:
-            NetworkError: A species has none, or they read something else.
+            NetworkError: A species has no networks, or their inputs do not match.
         """
         fixed = fixed_species(config)
         if not fixed:
@@ -108,15 +107,19 @@ class Networks:
 
 
 def fixed_species(config: Config) -> list[str]:
-    """The species that act by networks that never learn."""
+    """The species whose networks never learn."""
     return [name for name, species in config.species.items() if species.learning.policy == "fixed"]
 
 
 def load_networks(folder: Path, config: Config) -> Networks | None:
-    """The networks that a run began with, from its folder; None if it began with new ones.
+    """Reads the networks with which a run started; None if it started with new ones.
+
+    Args:
+        folder: Folder of the run.
+        config: Config of the run, with the digest of the networks.
 
     Raises:
-        NetworkError: They are missing, damaged, or not those that the config names.
+        NetworkError: They are missing or damaged, or differ from the digest in the config.
     """
     if not config.world.networks:
         return None
@@ -129,10 +132,10 @@ def load_networks(folder: Path, config: Config) -> Networks | None:
 
 
 def read_networks(path: Path) -> Networks:
-    """Reads a file of networks, which may come from anyone.
+    """Reads a file of networks, which may be from an untrusted source.
 
     Raises:
-        NetworkError: It cannot be read, or is not such a file.
+        NetworkError: The file cannot be read, or is not a file of networks.
     """
     try:
         arrays = read_arrays(path)

@@ -1,4 +1,4 @@
-"""Reads one file of a table, which may be damaged or come from anyone: all that reads tables passes through here."""
+"""Reads one file of a table, which may be damaged or from an untrusted source. All tables are read through here."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,14 +15,18 @@ from hedon.record.manifest import Manifest
 from hedon.text import brief
 
 _UNREADABLE = (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError, ValueError, OverflowError, MemoryError)
-"""What reading a damaged file raises. A panic of Polars is no `Exception`."""
+"""Errors raised by reading a damaged file. A panic of Polars is not an `Exception`."""
 
 
 def load_part(path: Path, table: Table | None = None) -> pl.DataFrame:
-    """The rows of a file as they are, with the table's columns, or with all that it has.
+    """Reads the rows of a file without checking their values.
+
+    Args:
+        path: Path of the file.
+        table: Table whose columns are read; None to read all columns of the file.
 
     Raises:
-        RecordError: it cannot be read; the message names it.
+        RecordError: The file cannot be read; the message names it.
     """
     with _reading(path):
         names = None if table is None else [column.name for column in table.columns]
@@ -30,19 +34,29 @@ def load_part(path: Path, table: Table | None = None) -> pl.DataFrame:
 
 
 def read_part(path: Path, table: Table, manifest: Manifest) -> pl.DataFrame:
-    """The rows of a file, which no reader stumbles over.
+    """Reads and checks the rows of a file.
+
+    Args:
+        path: Path of the file.
+        table: Table that it belongs to.
+        manifest: Manifest of the run, which limits values.
 
     Raises:
-        RecordError: it cannot be read, or it holds what no run writes; the message names it.
+        RecordError: The file cannot be read, or contains values that no run writes; the message names it.
     """
     return _sound(path, load_part(path, table), table, manifest)
 
 
 def read_living(path: Path, table: Table, manifest: Manifest) -> tuple[pl.DataFrame, int | None]:
-    """The living, and how many parts hold the deaths before that moment; None for all existing parts.
+    """Reads the living, and the number of parts with the deaths before that moment; None for all existing parts.
+
+    Args:
+        path: Path of the file.
+        table: Table that it belongs to.
+        manifest: Manifest of the run, which limits values.
 
     Raises:
-        RecordError: as `read_part`.
+        RecordError: As for `read_part`.
     """
     with _reading(path):
         content = BytesIO(read_whole(path))
@@ -53,7 +67,13 @@ def read_living(path: Path, table: Table, manifest: Manifest) -> tuple[pl.DataFr
 
 
 def value_faults(rows: pl.DataFrame, table: Table, manifest: Manifest | None) -> Iterator[str]:
-    """What no run writes: other types, values that are missing, not finite or out of range, unknown names."""
+    """Faults in rows that no run writes: wrong types; missing, non-finite or out-of-range values; unknown names.
+
+    Args:
+        rows: The rows to check.
+        table: Table that they belong to.
+        manifest: Manifest of the run, which limits worlds and steps; None for no such limits.
+    """
     most = {} if manifest is None else {"world": len(manifest.seeds) - 1, "step": manifest.steps_asked}
     other = [column for column, dtype in table.polars_schema.items() if rows.schema[column] != dtype]
     if other:

@@ -1,4 +1,4 @@
-"""Collects rows in memory and writes them as Parquet parts. It uses no threads itself; `writer` runs it in one."""
+"""Collects rows in memory and writes them as Parquet parts; `writer` runs it in a thread."""
 
 import hashlib
 import io
@@ -13,14 +13,17 @@ from hedon.record.folder import LIVING, PARTS_BEFORE, part_path
 
 
 class PartWriter:
-    """The buffers of all tables; writes them to parts.
+    """Buffers the rows of all tables and writes them to parts.
 
     Attributes:
-        part_rows: number of rows of one table that make up a part.
+        part_rows: Number of rows of one table in a part.
         parts: SHA-256 of each part on disk, in order, by table.
 
     Args:
-        parts: existing parts, if a run is resumed.
+        folder: Folder of the run.
+        tables: Tables to write, by name.
+        part_rows: Number of rows of one table in a part.
+        parts: SHA-256 of each existing part, in order, by table, if a run is resumed.
     """
 
     def __init__(
@@ -38,14 +41,14 @@ class PartWriter:
         self.parts = {name: list((parts or {}).get(name, ())) for name in tables}
 
     def append(self, table: str, rows: pl.DataFrame) -> None:
-        """Adds rows to the buffer; writes a part if there are enough."""
+        """Adds rows to the buffer of a table, and writes a part if there are enough rows."""
         self._waiting[table].append(rows)
         self._rows[table] += rows.height
         if self._rows[table] >= self.part_rows:
             self._write_part(table)
 
     def replace_living(self, rows: pl.DataFrame) -> None:
-        """Writes all buffers, then the living of this moment with the number of parts that hold the dead."""
+        """Writes all buffers, then the agents now alive with the number of parts that contain the dead."""
         self.flush()
         metadata = {PARTS_BEFORE: str(len(self.parts["agents"]))}
         write_atomically(
@@ -53,7 +56,7 @@ class PartWriter:
         )
 
     def flush(self) -> None:
-        """Writes all buffers. Readers see these deaths after the living are written the next time."""
+        """Writes all buffers. Readers do not see these deaths until the living are written again."""
         for table in self.tables:
             self._write_part(table)
 

@@ -1,4 +1,4 @@
-"""How and where a run was made: versions, machine, source, command line."""
+"""The provenance of a run: versions, machine, source and command line."""
 
 import os
 import platform
@@ -13,7 +13,7 @@ from typing import Any
 def collect_provenance() -> dict[str, Any]:
     """The fields of a manifest that describe this process, machine and source, and `started`.
 
-    Use: `Manifest(..., **collect_provenance())`.
+    Example: `Manifest(..., **collect_provenance())`.
     """
     revision, modified = git_revision(Path(__file__).resolve().parent)
     return {
@@ -29,12 +29,12 @@ def collect_provenance() -> dict[str, Any]:
 
 
 def to_unicode(text: str) -> str:
-    r"""An argument or a file's name as valid Unicode text; bytes that are not UTF-8 become escapes such as \udcff."""
+    r"""Converts an argument or a file name to valid Unicode; bytes that are not UTF-8 become escapes such as \udcff."""
     return text.encode("utf-8", "backslashreplace").decode()
 
 
 def utc_now() -> str:
-    """The time now, ISO 8601, UTC, to the second."""
+    """The current time in UTC, to the second, in ISO 8601 format."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
@@ -46,11 +46,11 @@ def usable_cpus() -> int:
 
 
 def git_revision(folder: Path) -> tuple[str | None, bool | None]:
-    """Revision of hedon's own checkout around a folder, and whether its tracked files differ from it.
+    """The revision of hedon's own checkout around a folder, and whether tracked files differ from it.
 
     Returns:
-        (None, None) if the folder is not in a checkout, if the checkout does not track it (hedon is
-        installed in an environment inside another project), or if there is no git.
+        The two values, or (None, None) if the folder is not in a checkout, if the checkout does not track it (hedon is
+        installed in an environment inside another project), or if git is missing.
     """
     if _git(folder, "ls-files", ".") in (None, ""):
         return None, None

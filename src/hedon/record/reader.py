@@ -1,4 +1,4 @@
-"""Reads a run's folder, also while the run is still running."""
+"""Reads a run's folder, even while the run is in progress."""
 
 import difflib
 from collections.abc import Iterator, Mapping, Sequence
@@ -36,14 +36,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Run:
-    """A run on disk. Every call reads the tables again, so that a run that is still running shows its newest rows.
+    """A run on disk. Every call reads the tables again, so a run in progress shows its newest rows.
 
-    In a notebook it shows itself: its worlds, and how many lived over time.
+    In a notebook it is displayed as a table of its worlds, with a plot of the number of agents alive.
 
     Attributes:
-        path: the folder.
-        manifest: as it was when the run was opened.
-        config_text: the resolved config, as TOML.
+        path: Folder of the run.
+        manifest: The manifest, as it was when the run was opened.
+        config_text: The resolved config, as TOML.
     """
 
     path: Path
@@ -51,10 +51,10 @@ class Run:
     config_text: str
 
     def load(self) -> "LoadedRun":
-        """The run as its files are now, each of which is read once.
+        """The run with its files as they are now, each read only once.
 
         Raises:
-            RecordError: A file of its folder cannot be listed.
+            RecordError: The folder's files cannot be listed.
         """
         return LoadedRun(self.path, self.manifest, self.config_text)
 
@@ -69,7 +69,7 @@ class Run:
 
     @property
     def columns(self) -> Columns:
-        """What the columns of the tables follow from."""
+        """The properties that determine the columns of the tables."""
         return self.manifest.columns
 
     @property
@@ -84,7 +84,7 @@ class Run:
 
     @property
     def reward_names(self) -> tuple[str, ...]:
-        """Names of the genome columns that have an effect on the reward."""
+        """Names of the genome columns that affect the reward."""
         return self.columns.reward_names
 
     @property
@@ -96,7 +96,7 @@ class Run:
         return f"<Run {self.path}: {status_line(self.manifest)}>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows; damaged parts are left out."""
+        """The display in a notebook, without damaged parts."""
         return run_html(str(self.path), self.manifest, self.population(skip_damaged=True))
 
     @overload
@@ -104,18 +104,18 @@ class Run:
     @overload
     def agents(self, *, skip_damaged: bool = False, frame: Literal["pandas"]) -> "pd.DataFrame": ...
     def agents(self, *, skip_damaged: bool = False, frame: FrameName = "polars") -> "pl.DataFrame | pd.DataFrame":
-        """All agents of one moment: the dead, in the order in which they were written, then the living.
+        """All agents up to one moment: the dead, in the order in which they were written, then the living.
 
-        Before a run has ended, this is the moment when the living were last written; agents that died later count as
-        alive.
+        While a run is in progress, this is the moment when the living were last written; agents that died later count
+        as alive.
 
         Args:
-            skip_damaged: leave out parts that cannot be read.
-            frame: "polars", or "pandas" for a copy as pandas has it, where integers with missing values are floats.
+            skip_damaged: Whether to leave out parts that cannot be read, instead of raising an error.
+            frame: "polars", or "pandas" for a copy in which integers with missing values are floats.
 
         Raises:
-            RecordError: a part is damaged, and `skip_damaged` is false.
-            ArgumentError: `frame` is none of these, or pandas is not installed.
+            RecordError: A part is damaged, and `skip_damaged` is false.
+            ArgumentError: `frame` is not one of these, or pandas is not installed.
         """
         require_frame(frame)
         rows = self._agents().sound(skip_damaged)
@@ -126,27 +126,27 @@ class Run:
     @overload
     def population(self, *, skip_damaged: bool = False, frame: Literal["pandas"]) -> "pd.DataFrame": ...
     def population(self, *, skip_damaged: bool = False, frame: FrameName = "polars") -> "pl.DataFrame | pd.DataFrame":
-        """One row per world and interval, by world and step.
+        """One row per world and interval, sorted by world and step.
 
         Args:
-            skip_damaged: as for `agents`.
-            frame: as for `agents`.
+            skip_damaged: As for `agents`.
+            frame: As for `agents`.
 
         Raises:
-            RecordError: a part is damaged, and `skip_damaged` is false.
-            ArgumentError: `frame` is none of these, or pandas is not installed.
+            RecordError: A part is damaged, and `skip_damaged` is false.
+            ArgumentError: `frame` is neither "polars" nor "pandas", or pandas is not installed.
         """
         require_frame(frame)
         rows = self._population().sound(skip_damaged)
         return to_pandas(rows) if frame == "pandas" else rows
 
     def to_xarray(self) -> "xarray.Dataset":
-        """The table `population` as labelled arrays over seed, species where there are several, and step.
+        """The table `population` as labelled arrays over seed, species (if there are several) and step.
 
         Each variable has its unit and its meaning as attributes.
 
         Raises:
-            RecordError: a part is damaged.
+            RecordError: A part is damaged.
             ArgumentError: xarray is not installed.
         """
         several = ["species"] if self.columns.several else []
@@ -158,7 +158,7 @@ class Run:
     def frames(self) -> pl.LazyFrame:
         """The frames, as a lazy frame, since they can be larger than memory. Empty if none were recorded.
 
-        Collecting it raises an error of Polars where a part is damaged; `frame_parts` names the part.
+        If a part is damaged, collecting it raises a Polars error; `frame_parts` names the part.
         """
         table = self._tables["frames"]
         paths = part_paths(self.path, "frames")
@@ -168,10 +168,10 @@ class Run:
         """The frames part by part, in the order in which they were written.
 
         Args:
-            names: only these columns; by default all.
+            names: Columns to read; all by default.
 
         Raises:
-            RecordError: a part is damaged.
+            RecordError: A part is damaged.
         """
         table = self._tables["frames"]
         if names:
@@ -201,12 +201,12 @@ class Run:
         return replace(read, rows=read.rows.sort("world", "step", maintain_order=True))
 
     def _read(self, name: str, paths: Sequence[Path], used: int | None = None) -> "_Rows":
-        """All sound rows of the first parts of a table, and what is wrong with the other files.
+        """All valid rows of the first parts of a table, and the faults of damaged files.
 
         Args:
-            name: Of the table.
-            paths: Of all its parts.
-            used: How many of the parts count, since later ones have deaths after the living were written; None for all.
+            name: Name of the table.
+            paths: Paths of all its parts.
+            used: Number of parts to use, since later ones have deaths after the living were written; None for all.
         """
         table = self._tables[name]
         frames, faults = [pl.DataFrame(schema=table.polars_schema)], dict[Path, RecordError]()
@@ -226,13 +226,13 @@ class Run:
 
 @dataclass(frozen=True)
 class _Rows:
-    """What a table's files hold, and the faults of those that cannot be used."""
+    """The rows of a table's files, and the faults of files that cannot be used."""
 
     rows: pl.DataFrame
     faults: Mapping[Path, RecordError]
 
     def sound(self, skip_damaged: bool) -> pl.DataFrame:
-        """The rows; an error for all faults unless they are skipped."""
+        """The rows; raises an error that lists all faults unless they are skipped."""
         if self.faults and not skip_damaged:
             listed = "; ".join(map(str, self.faults.values()))
             raise RecordError(f"{listed}: read the others with skip_damaged=True, or remove the file")
@@ -248,7 +248,7 @@ class LoadedRun(Run):
 
     @property
     def config(self) -> Config:
-        """As `Run.config`."""
+        """See `Run.config`."""
         return self._loaded_config
 
     def _agents(self) -> _Rows:
@@ -274,7 +274,7 @@ def open_run(path: Path | str) -> Run:
     """Opens a run's folder.
 
     Raises:
-        RecordError: it is not a run folder, its manifest or config cannot be read, or it holds a symbolic link.
+        RecordError: It is not a run folder, its manifest or config cannot be read, or it contains a symbolic link.
     """
     folder = Path(path)
     require_unicode(folder)
@@ -289,7 +289,7 @@ def open_run(path: Path | str) -> Run:
 
 
 def _nearest(folder: Path) -> str:
-    """A hint at runs that the user may mean: above the folder, inside it, or with a similar name."""
+    """A hint to runs that the user may have meant: above the folder, inside it, or with a similar name."""
     if folder.is_dir():
         around = [parent for parent in folder.resolve().parents[:2] if holds_run(parent)]
         inside = sorted(child for child in folder.iterdir() if child.is_dir() and holds_run(child))

@@ -1,4 +1,4 @@
-"""Returns a run's records to a checkpoint, so that the run continues without a missing or repeated row."""
+"""Rolls a run's records back to a checkpoint, so that the run continues without missing or repeated rows."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -20,13 +20,17 @@ from hedon.text import command_word
 
 
 def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint | None, list[str]]:
-    """The newest undamaged checkpoint of a run, or the one of a given step.
+    """The newest undamaged checkpoint of a run, or the one at a given step.
+
+    Args:
+        folder: Folder of the run.
+        step: Step of the checkpoint [step]; None for the newest.
 
     Returns:
-        The checkpoint, or None for a run that was killed before its first; and messages about damaged ones.
+        The checkpoint, or None for a run that was killed before its first; and messages about damaged checkpoints.
 
     Raises:
-        RecordError: there is no checkpoint of that step, all are damaged, or they were removed.
+        RecordError: There is no checkpoint at that step, all are damaged, or they were removed.
     """
     paths = checkpoint_paths(folder)
     if step is not None:
@@ -49,10 +53,14 @@ def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint |
 
 
 def verify_parts(folder: Path, parts: Mapping[str, Sequence[str]]) -> None:
-    """Compares the parts on disk with those that a checkpoint lists.
+    """Compares the parts on disk with the list in a checkpoint.
+
+    Args:
+        folder: Folder of the run.
+        parts: SHA-256 of each part in the checkpoint, in order, by table.
 
     Raises:
-        RecordError: a part is missing or its content was changed.
+        RecordError: A part is missing, or its content was changed.
     """
     for table, digests in parts.items():
         for index, digest in enumerate(digests):
@@ -73,10 +81,15 @@ def _remedy(folder: Path) -> str:
 
 
 def roll_back(folder: Path, parts: Mapping[str, Sequence[str]], step: int) -> None:
-    """Removes everything later than a checkpoint: parts, checkpoints, a fault, and files that were not completed.
+    """Removes everything later than a checkpoint: parts, checkpoints, the state at a fault, and incomplete files.
+
+    Args:
+        folder: Folder of the run.
+        parts: SHA-256 of each part in the checkpoint, in order, by table.
+        step: Step of the checkpoint [step].
 
     Raises:
-        RecordError: a file cannot be removed.
+        RecordError: A file cannot be removed.
     """
     later = [path for path in checkpoint_paths(folder) if path > checkpoint_path(folder, step)]
     later += checkpoint_paths(folder, FAULT)

@@ -1,4 +1,4 @@
-"""Turns arrays from the engine into a table as it is stored."""
+"""Converts arrays from the engine to a table as it is stored."""
 
 from collections.abc import Mapping
 
@@ -16,16 +16,16 @@ def rows_to_frame(table: Table, rows: Mapping[str, ArrayLike]) -> pl.DataFrame:
     """Checks rows against the schema and copies them.
 
     Args:
-        table: the schema.
-        rows: one array of shape (n,) per column, in any order; a scalar means n equal values; a
-            nullable column may be left out. In nullable columns −1 (integers) and NaN (floats) become
+        table: Schema of the rows.
+        rows: One array of shape (n,) per column, in any order; a scalar stands for n equal values, and a
+            nullable column may be omitted. In nullable columns, −1 (integers) and NaN (floats) become
             missing values.
 
     Returns:
-        The rows with exactly the table's columns and types; it shares no memory with `rows`.
+        The rows with exactly the columns and types of the table, as a copy.
 
     Raises:
-        RecordError: a column is missing or unknown, has another length, or holds a value that its type cannot hold.
+        RecordError: A column is missing or unknown, has another length, or has a value that its type cannot represent.
     """
     known = {column.name for column in table.columns}
     unknown = sorted(set(rows) - known)

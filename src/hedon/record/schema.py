@@ -1,7 +1,7 @@
-"""Every table of a run, column by column. The writer, the reader and the documentation all use this.
+"""The schema of every table of a run, used by the writer, the reader and the documentation.
 
-Columns that depend on the settings are generated: one `eaten_<kind>`, `w_<kind>` and so on for each food
-kind, in the order of the config, and one `neutral_<i>` for each neutral gene.
+Columns that depend on settings are generated: `eaten_<kind>`, `w_<kind>` and so on for each food
+kind, in the order of the config, and `neutral_<i>` for each neutral gene.
 """
 
 from collections import Counter
@@ -14,7 +14,7 @@ from hedon.config.type import diet
 from hedon.record.column import Column, Table
 from hedon.record.error import RecordError
 
-FORMAT_VERSION = 1  # of the run folder; increased when an older reader would misread a newer folder
+FORMAT_VERSION = 1  # of the run folder; increased if older readers would misread newer folders
 
 WORLD = Column("world", "i32", "1", "index of the world in the run")
 SEED = Column("seed", "i64", "1", "seed of the world")
@@ -22,20 +22,20 @@ SEED = Column("seed", "i64", "1", "seed of the world")
 
 @dataclass(frozen=True)
 class Columns:
-    """What the columns of a run's tables follow from.
+    """The properties of a run that determine the columns of its tables.
 
     Attributes:
-        food_kinds: names, in the order of the config.
-        neutral_count: number of neutral genes.
-        species: names, in the order of the config.
-        rewards: names of the genes that have an effect on the reward, of all species, in order.
-        prey: names of the species that are eaten, by others or by their own kind.
-        obstacles: whether the worlds have obstacles.
-        mating: whether some species has two parents.
-        stores: names of the stores beside energy, of all species.
-        levels: whether agents and frames have a column for each of them; not before 1.0.
-        causes: whether agents die of more than age and energy; None where a manifest does not say: columns of causes
-            and of hunts then are there if there are several species.
+        food_kinds: Names of the food kinds, in the order of the config.
+        neutral_count: Number of neutral genes.
+        species: Names of the species, in the order of the config.
+        rewards: Names of the genes that affect the reward, of all species, in order.
+        prey: Names of the species that are eaten, by others or by their own kind.
+        obstacles: Whether the worlds have obstacles.
+        mating: Whether a species has two parents.
+        stores: Names of the stores other than energy, of all species.
+        levels: Whether agents and frames have a column for each of these stores; false before 1.0.
+        causes: Whether agents die of more than age and energy. None if the manifest lacks it; columns of causes
+            and of hunts then exist if there are several species.
     """
 
     food_kinds: tuple[str, ...]
@@ -51,7 +51,7 @@ class Columns:
 
     @property
     def reward_names(self) -> tuple[str, ...]:
-        """Names of the weights; runs that do not name them have one per food kind, and action."""
+        """Names of the weights; if the run does not name them, one per food kind and that of action."""
         return self.rewards or (*(f"w_{kind}" for kind in self.food_kinds), "w_action")
 
     @property
@@ -66,27 +66,27 @@ class Columns:
 
     @property
     def shown_names(self) -> tuple[str, ...]:
-        """The genes as a terminal shows them: the weights, and one neutral gene as a control."""
+        """Names of the genes shown on a terminal: the weights, and one neutral gene as a control."""
         return (*self.reward_names, *self.neutral_names[:1])
 
     @property
     def several(self) -> bool:
-        """Whether there are several species: then rows name it."""
+        """Whether there are several species, so that rows name theirs."""
         return len(self.species) > 1
 
     @property
     def held_names(self) -> tuple[str, ...]:
-        """The stores beside energy that agents and frames have columns of."""
+        """The stores other than energy for which agents and frames have columns."""
         return self.stores if self.levels else ()
 
     @property
     def has_causes(self) -> bool:
-        """Whether rows have the cause of a death."""
+        """Whether rows have columns for causes of death."""
         return self.several if self.causes is None else self.causes
 
     @property
     def has_hunts(self) -> bool:
-        """Whether rows have columns of hunts."""
+        """Whether rows have columns for hunts."""
         return self.several if self.causes is None else bool(self.prey)
 
 
@@ -114,7 +114,7 @@ def columns_of(config: Config) -> Columns:
 
 
 CAUSES = ("age_energy", "starved", "eaten")
-"""Why agents die, in the engine's order."""
+"""Causes of death, in the engine's order."""
 _CAUSE = Column(
     "cause", "string", "", "why it died: " + ", ".join(CAUSES) + "; missing while it lives", True, choices=CAUSES
 )
@@ -132,7 +132,7 @@ _HARM = (
 
 
 def agent_table(columns: Columns) -> Table:
-    """One row per agent: the dead in the parts, those alive at the last flush in `living.parquet`."""
+    """Schema with one row per agent: the parts contain the dead, `living.parquet` the agents alive at the last flush."""
     return _table(
         "agents",
         "one agent; living agents have no death_step",
@@ -163,7 +163,7 @@ def agent_table(columns: Columns) -> Table:
 
 
 def _population_table(columns: Columns) -> Table:
-    """One row per world and interval: state at its end, counts and the energy ledger over it."""
+    """Schema with one row per world and interval: state at its end, and counts and energy ledger over it."""
     return _table(
         "population",
         "one species of one world over one interval of steps"
@@ -221,7 +221,7 @@ def _population_table(columns: Columns) -> Table:
 
 
 def _frame_table(columns: Columns) -> Table:
-    """One row per agent or food and frame; written only if the plan has frames."""
+    """Schema with one row per agent or food in each frame; written only if frames are recorded."""
     kinds = (*columns.species, *columns.food_kinds)
     return _table(
         "frames",

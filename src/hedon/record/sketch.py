@@ -1,4 +1,4 @@
-"""How a run shows itself in a notebook: a small table, and how many lived over time."""
+"""The display of a run in a notebook: a small table, and a plot of the number of agents alive."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,17 +10,17 @@ from hedon.record.manifest import Manifest
 from hedon.text import count
 
 WIDTH, HEIGHT, EDGE = 460, 110, 16
-"""Size of the figure, and the part at its edge for labels [px]."""
+"""Size of the figure, and its margin for labels [px]."""
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#5e4fa2", "#6b7884")
 """Colors of the worlds, in turn: Okabe & Ito (2008)."""
 OPEN = 2**31 - 1
-"""The most steps that a run can have: asked of worlds that a program drives, since nobody knows for how long."""
+"""Largest number of steps of a run, used for worlds that a program drives, whose length is not known in advance."""
 DASHES = ("", "6 3", "2 3", "6 3 2 3")
-"""Colors of the species of a world, in turn."""
+"""Dash patterns of the species of a world, in turn."""
 
 
 def status_line(manifest: Manifest) -> str:
-    """What a run is and how far it has come, in one line."""
+    """A line that describes a run and its progress."""
     name = manifest.name or manifest.preset or "run"
     worlds = count(len(manifest.seeds), "world")
     done = max(manifest.steps_done, default=0)
@@ -30,7 +30,13 @@ def status_line(manifest: Manifest) -> str:
 
 
 def run_html(title: str, manifest: Manifest, population: pl.DataFrame) -> str:
-    """A table with a row per world and species, and a figure of the numbers alive."""
+    """An HTML table with a row per world and species, and a figure of the numbers alive.
+
+    Args:
+        title: Title, as plain text.
+        manifest: Manifest of the run.
+        population: Rows of the table `population`.
+    """
     several = manifest.columns.several
     named = "<th>species</th>" if several else ""
     head = f"<tr><th>seed</th>{named}<th>steps</th><th>alive</th><th>births</th><th>deaths</th></tr>"
@@ -48,7 +54,7 @@ def run_html(title: str, manifest: Manifest, population: pl.DataFrame) -> str:
 
 @dataclass(frozen=True)
 class _Course:
-    """The rows of one species of a world, with what tells it apart; the name is empty where there is only one."""
+    """The rows of one species of a world; the name of the species is empty if there is only one."""
 
     seed: int
     index: int
@@ -70,7 +76,7 @@ def _row(course: _Course) -> str:
 
 
 def _figure(courses: Sequence[_Course]) -> str:
-    """Numbers alive over time as an SVG, a line per world and species; empty where nothing is recorded."""
+    """An SVG of the numbers alive over time, with a line per world and species; empty if nothing is recorded."""
     last = max((int(each.rows["step"].to_numpy().max(initial=0)) for each in courses), default=0)
     most = max((int(each.rows["alive"].to_numpy().max(initial=0)) for each in courses), default=0)
     if not last or not most:

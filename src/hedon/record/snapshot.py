@@ -1,4 +1,4 @@
-"""The state of one world at one moment, for pictures: `final.npz`, plain arrays without pickle."""
+"""The state of one world at one moment, for pictures; stored in `final.npz` as plain arrays without pickle."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -45,7 +45,7 @@ OWN = {
     "mouth_spread": "sensor.mouth_spread",
     "mouth_center": "sensor.mouth_center",
 }
-"""The columns of `Snapshot.own`, each with its path in a species."""
+"""The columns of `Snapshot.own`, each with the path of its setting in a species."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +108,7 @@ class Snapshot:
     own: np.ndarray = field(default_factory=lambda: np.zeros((0, len(OWN))))
 
     def of_agents(self, name: str) -> np.ndarray:
-        """One of `OWN` of each agent, shape (n,)."""
+        """The value of a column of `OWN` for each agent, shape (n,)."""
         return self.own[:, list(OWN).index(name)] if len(self.own) else getattr(self, name)[self.species]
 
     def __post_init__(self) -> None:
@@ -127,12 +127,12 @@ class Snapshot:
 def own_bodies(
     config: Config, species: NDArray[np.int32], genes: Mapping[str, NDArray[np.float32]]
 ) -> NDArray[np.float64]:
-    """What pictures show of bodies, where genes set some of it: `Snapshot.own`.
+    """The properties of bodies that pictures show, if genes set some of them: `Snapshot.own`, shape (n, 5) or (0, 5).
 
     Args:
-        config: of the world.
-        species: of each agent, an index, shape (n,).
-        genes: of each agent by column, shape (n,).
+        config: Config of the world.
+        species: Index of each agent's species, shape (n,).
+        genes: Genes of the agents by column, each of shape (n,).
     """
     if not any(set(OWN.values()) & own.genome.set.keys() for own in config.species.values()):
         return np.zeros((0, len(OWN)))
@@ -146,10 +146,14 @@ def own_bodies(
 
 
 def save_snapshot(folder: Path, snapshot: Snapshot) -> None:
-    """Writes `final.npz` into a run's folder, atomically.
+    """Writes `final.npz` to a run's folder atomically.
+
+    Args:
+        folder: Folder of the run.
+        snapshot: The state to write.
 
     Raises:
-        RecordError: it cannot be written.
+        RecordError: It cannot be written.
     """
     arrays: dict[str, Any] = {each.name: np.asarray(getattr(snapshot, each.name)) for each in fields(Snapshot)}
     try:
@@ -162,7 +166,7 @@ def load_snapshot(folder: Path) -> Snapshot | None:
     """Reads `final.npz` of a run; None if there is none.
 
     Raises:
-        RecordError: the file is damaged.
+        RecordError: The file is damaged.
     """
     path = folder / SNAPSHOT
     if not path.exists():
@@ -181,7 +185,7 @@ def load_snapshot(folder: Path) -> Snapshot | None:
 
 
 def _require_drawable(snapshot: Snapshot) -> None:
-    """Refuses what no world has: numbers that are not finite, indices out of range, names that are not text."""
+    """Refuses values that no world has: non-finite numbers, indices out of range, and names that are not text."""
     for name in _ARRAYS:
         if not np.isfinite(getattr(snapshot, name)).all():
             raise ValueError(f"{name} has numbers that are not finite")

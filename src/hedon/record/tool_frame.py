@@ -1,4 +1,4 @@
-"""Tables of a run as data frames of the library that a reader prefers."""
+"""Tables of a run as data frames of Polars or pandas."""
 
 import difflib
 from typing import TYPE_CHECKING, Any, Literal
@@ -16,10 +16,10 @@ FRAMES: tuple[FrameName, ...] = ("polars", "pandas")
 
 
 def require_frame(name: Any) -> None:
-    """Refuses a library that is not known or not installed, before anything is read.
+    """Checks that a data frame library is known and installed, before anything is read.
 
     Raises:
-        ArgumentError: the name is not one of `FRAMES`, or pandas is not installed.
+        ArgumentError: The name is not one of `FRAMES`, or pandas is not installed.
     """
     if name not in FRAMES:
         close = difflib.get_close_matches(str(name), FRAMES, n=1)
@@ -30,10 +30,10 @@ def require_frame(name: Any) -> None:
 
 
 def to_pandas(table: pl.DataFrame) -> "pd.DataFrame":
-    """The same rows for pandas, as copies.
+    """A copy of the rows for pandas.
 
-    Numbers keep their types, but integers with missing values become 64-bit floats, in which these are NaN. Missing
-    texts are None.
+    Numbers keep their types, except that integers with missing values become 64-bit floats, with NaN for missing.
+    Missing texts are None.
     """
     return _pandas().DataFrame({column.name: column.to_numpy(writable=True) for column in table})
 

@@ -1,4 +1,4 @@
-"""Writes a run's folder while the engine computes: rows go through a bounded queue to a thread."""
+"""Writes a run's folder while the engine computes; rows pass through a bounded queue to a thread."""
 
 import queue
 import threading
@@ -29,26 +29,26 @@ _CLOSE = object()
 
 
 class Writer:
-    """Writes a run's folder; nothing else does.
+    """Writes all files of a run's folder. Use it as a context manager.
 
-    Rows are written by a thread, and a checkpoint by the caller's: it is written from the worlds as they are.
+    Rows are written by a thread. Checkpoints are written by the calling thread, directly from the worlds.
 
-    Use it as a context manager. The caller may reuse the arrays of rows as soon as a call returns. An error of
+    The caller may reuse the arrays of rows as soon as a call returns. An error of
     the writing thread, such as a full disk, is raised as `RecordError` by the next call, at the latest by
-    `close`; what was written before stays readable. If the caller computes faster than the disk writes, it
-    waits: no row is dropped.
+    `close`; earlier records remain readable. If the caller computes faster than the disk writes, it
+    waits, so no row is dropped.
 
     Args:
-        folder: made if it does not exist; must not hold a run already, unless `parts` is given.
-        config_text: the complete config, as TOML; not written for a resumed run, which has it already.
-        manifest: its food kinds and its number of neutral genes fix the columns.
-        part_rows: rows after which a part is written.
-        queue_size: calls that may wait for the thread.
-        parts: for a resumed run: the SHA-256 of each existing part, in order, by table.
-        beginning: files that a new run begins with besides its config, by name.
+        folder: Folder of the run, created if necessary; must not contain a run, unless `parts` is given.
+        config_text: The complete config, as TOML; not written for a resumed run, which has it already.
+        manifest: Manifest of the run, which determines the columns of its tables.
+        part_rows: Number of rows after which a part is written.
+        queue_size: Number of calls that may wait for the thread.
+        parts: For a resumed run, the SHA-256 of each existing part, in order, by table.
+        beginning: Contents of the files with which a new run starts, except the config, by name.
 
     Raises:
-        RecordError: the folder holds a run already, or cannot be written.
+        RecordError: The folder already contains a run, or cannot be written.
     """
 
     def __init__(
@@ -77,15 +77,15 @@ class Writer:
         self._thread.start()
 
     def append(self, table: str, *rows: Rows) -> None:
-        """Appends rows to a table. No part ends within what one call appends: give all rows of a step in one call.
+        """Appends rows to a table. A part never ends within one call, so pass all rows of a step in one call.
 
         Args:
             table: "agents", "population" or "frames".
-            rows: mappings, each with one array of shape (n,) per column of the schema; a scalar means n equal values.
-                Missing values of nullable columns are −1 (integers) or NaN (floats).
+            rows: Mappings, each with one array of shape (n,) per column of the schema; a scalar stands for n equal
+                values. Missing values of nullable columns are −1 (integers) or NaN (floats).
 
         Raises:
-            RecordError: the rows do not fit the schema, an earlier write failed, or the writer is closed.
+            RecordError: The rows do not fit the schema, an earlier write failed, or the writer is closed.
         """
         if table not in self.tables:
             raise RecordError(f"no table {table!r}: there are {', '.join(self.tables)}")
@@ -94,18 +94,22 @@ class Writer:
     def replace_living(self, *rows: Rows) -> None:
         """Writes all rows so far, then replaces the rows of the living agents of all worlds.
 
-        Readers see this moment. Call it from time to time.
+        Readers see the run as of the last such call, so call it regularly.
 
         Raises:
-            RecordError: as `append`.
+            RecordError: As for `append`.
         """
         self._put(("living", self._frame("agents", rows)))
 
     def save_checkpoint(self, head: CheckpointHead, fill: Fill) -> None:
-        """Saves a checkpoint after all rows so far are on disk; completes its head with the digests of their parts.
+        """Saves a checkpoint once all rows so far are on disk.
+
+        Args:
+            head: Data of the checkpoint; the digests of the parts are added here.
+            fill: Writes the arrays.
 
         Raises:
-            RecordError: as `append`.
+            RecordError: As for `append`.
         """
         self.flush()
         self.require_folder()
@@ -117,10 +121,14 @@ class Writer:
             self._raise_fault()
 
     def save_fault(self, head: CheckpointHead, fill: Fill) -> None:
-        """Saves the state of a run that stopped at a fault, in its own folder, after all rows are on disk.
+        """Saves the state of a run that stopped at a fault, in a separate folder, once all rows are on disk.
+
+        Args:
+            head: Data of the checkpoint; the digests of the parts are added here.
+            fill: Writes the arrays.
 
         Raises:
-            RecordError: as `append`.
+            RecordError: As for `append`.
         """
         self.flush()
         path = checkpoint_path(self.folder, head.step, FAULT)
@@ -133,7 +141,7 @@ class Writer:
         """Replaces the manifest immediately.
 
         Raises:
-            RecordError: it cannot be written.
+            RecordError: It cannot be written.
         """
         self.require_folder()
         save_manifest(self.folder, manifest)
@@ -142,7 +150,7 @@ class Writer:
         """Waits until all rows so far are on disk.
 
         Raises:
-            RecordError: as `append`.
+            RecordError: As for `append`.
         """
         done = threading.Event()
         self._put(done)
@@ -153,7 +161,7 @@ class Writer:
         """Writes all remaining rows and ends the thread. A second call does nothing.
 
         Raises:
-            RecordError: something could not be written.
+            RecordError: A write failed.
         """
         if self._closed:
             return
@@ -198,10 +206,10 @@ class Writer:
         self._queue.put(item)
 
     def require_folder(self) -> None:
-        """Checks that the folder still exists, without waiting until the next rows are written.
+        """Checks immediately that the folder still exists, instead of failing at the next write.
 
         Raises:
-            RecordError: it, or the folder of a table, was removed or replaced.
+            RecordError: The folder, or that of a table, was removed or replaced.
         """
         for path, identity in self._folders.items():
             if _identity(path) != identity:
@@ -217,7 +225,7 @@ class Writer:
             ) from self._fault
 
     def _work(self) -> None:
-        """The thread: takes items until it is closed, also after an error, so that no caller waits forever."""
+        """Runs in the thread: takes items until closed, even after an error, so that no caller waits forever."""
         item = None
         while item is not _CLOSE:
             item = self._queue.get()
