@@ -1,4 +1,4 @@
-"""Statistics: functions of arrays that know no run, no file and no world. One method per file."""
+"""Statistical methods, one per file: functions of arrays that do not depend on runs, files or worlds."""
 
 from lazy_loader import attach_stub
 

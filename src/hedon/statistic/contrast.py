@@ -1,4 +1,4 @@
-"""Do two groups of worlds differ? Shares by Fisher's test, means in pairs or by Welch's, spreads by the F law."""
+"""Do two groups of worlds differ? Fisher's test for shares, paired or Welch's tests for means, a test for spreads."""
 
 import math
 from dataclasses import dataclass
@@ -19,22 +19,22 @@ Floats = NDArray[np.float64]
 PERMUTATIONS = 9_999
 _SEED = 20261124
 _EQUAL = 1e-9
-"""Relative difference below which two chances are the same number, computed in two ways."""
+"""Relative difference below which two probabilities count as equal, since they are computed in different ways."""
 
 
 def fisher_mid_p(count: int, of: int, other_count: int, other_of: int) -> float:
-    """Two-sided mid-p value of Fisher's test that two shares are equal.
+    """The two-sided mid-p value of Fisher's test that two shares are equal.
 
-    With the total count given, the first is hypergeometric if the shares are equal. Tables that are less likely than
-    the one seen count in full, those as likely as it by half: the plain test, which counts these in full, rejects far
-    less often than promised where samples are small. Source: Lancaster (1961), Journal of the American Statistical
+    If the shares are equal, the first count, given the total, is hypergeometric. Tables that are less likely than the
+    observed one count in full, and equally likely tables count by half. The standard test counts the latter in full and
+    is too conservative for small samples. Source: Lancaster (1961), Journal of the American Statistical
     Association 56, 223–234; Lydersen, Fagerland and Laake (2009), Statistics in Medicine 28, 1159–1175.
 
     Args:
-        count: worlds of the first group that have it.
-        of: all of its worlds.
-        other_count: worlds of the second group that have it.
-        other_of: all of its worlds.
+        count: Worlds of the first group with the property.
+        of: Number of worlds in the first group.
+        other_count: Worlds of the second group with the property.
+        other_of: Number of worlds in the second group.
     """
     least, most = max(0, count + other_count - other_of), min(of, count + other_count)
     chances = stats.hypergeom.pmf(np.arange(least, most + 1), of + other_of, count + other_count, of)
@@ -44,12 +44,12 @@ def fisher_mid_p(count: int, of: int, other_count: int, other_of: int) -> float:
 
 
 def difference_interval(values: Floats, others: Floats, level: float = LEVEL) -> tuple[float, float, float]:
-    """Difference of two means, the first minus the second, with Welch's (1947) interval; each of two values or more.
+    """The difference of two means, the first minus the second, with Welch's (1947) interval.
 
     Args:
-        values: first group, (n,).
-        others: second group, (m,).
-        level: of confidence.
+        values: The first group, shape (n,), two values or more.
+        others: The second group, shape (m,), two values or more.
+        level: Confidence level.
 
     Returns:
         Difference, lower and upper bound.
@@ -60,13 +60,13 @@ def difference_interval(values: Floats, others: Floats, level: float = LEVEL) ->
 
 @dataclass(frozen=True)
 class Contrast:
-    """How two conditions differ.
+    """The difference between two conditions. Unknown values are NaN.
 
     Attributes:
-        difference: of the means, the second minus the first; NaN without worlds, as all that is unknown.
-        low, high: bounds of its 95 % interval; NaN below `FOR_INTERVAL` pairs, or worlds of each condition.
-        effect: size of the effect: the difference in standard deviations, of pairs or within conditions.
-        p: chance of so large a difference, up or down, if the conditions are alike.
+        difference: Difference of the means, the second minus the first.
+        low, high: Bounds of its 95 % interval; NaN below `FOR_INTERVAL` pairs, or worlds of each condition.
+        effect: Effect size: the difference in standard deviations, of pairs or within conditions.
+        p: Two-sided p value of the difference.
     """
 
     difference: float
@@ -77,13 +77,13 @@ class Contrast:
 
 
 def paired_contrast(values: Floats, others: Floats) -> Contrast:
-    """Compares worlds in pairs: Student's interval of the mean difference, and exchange within pairs.
+    """Compares worlds in pairs, with Student's interval of the mean difference and a permutation test within pairs.
 
-    The size of the effect is Cohen's d_z, the mean difference over the standard deviation of differences.
+    The effect size is Cohen's d_z, the mean difference over the standard deviation of differences.
 
     Args:
-        values: of the first condition, (pairs,).
-        others: of the second, in the same order, (pairs,).
+        values: Values of the first condition, shape (pairs,).
+        others: Values of the second condition in the same order, shape (pairs,).
     """
     change = others - values
     if len(change) < 2:
@@ -96,20 +96,20 @@ def paired_contrast(values: Floats, others: Floats) -> Contrast:
 
 
 def independent_contrast(values: Floats, others: Floats) -> Contrast:
-    """Compares independent worlds by Welch's (1947) t test, whose level holds if spreads differ too.
+    """Compares independent worlds with Welch's (1947) t test, which keeps its level even if variances differ.
 
-    The size of the effect is Hedges' g (1981).
+    The effect size is Hedges' g (1981).
 
     Args:
-        values: of the first condition, (n,).
-        others: of the second, (m,).
+        values: Values of the first condition, shape (n,).
+        others: Values of the second condition, shape (m,).
     """
     n, m = len(values), len(others)
     difference = float(others.mean() - values.mean()) if n and m else math.nan
     if min(n, m) < 2:
         return Contrast(difference, *[math.nan] * 4)
     pooled = math.sqrt(((n - 1) * values.var(ddof=1) + (m - 1) * others.var(ddof=1)) / (n + m - 2))
-    if pooled == 0:  # no world differs from its like
+    if pooled == 0:  # no variation within conditions
         return Contrast(difference, difference, difference, math.nan, _permuted((values, others), _change))
     p = float(np.asarray(stats.ttest_ind(others, values, equal_var=False))[1])
     bounds = difference_interval(others, values)[1:] if min(n, m) >= FOR_INTERVAL else (math.nan, math.nan)
@@ -122,7 +122,7 @@ def _change(x: Floats, y: Floats, axis: int) -> Floats:
 
 
 def _permuted(samples: tuple[Floats, ...], statistic: Any, kind: str = "independent") -> float:
-    """Two-sided p value; of all permutations where they are few enough."""
+    """The two-sided p value of a permutation test, over all permutations if there are few enough."""
     rng = np.random.default_rng(_SEED)
     found = stats.permutation_test(
         samples, statistic, permutation_type=kind, n_resamples=PERMUTATIONS, rng=rng, vectorized=True
@@ -131,17 +131,17 @@ def _permuted(samples: tuple[Floats, ...], statistic: Any, kind: str = "independ
 
 
 def spread_ratio_interval(values: Floats, others: Floats, level: float = LEVEL) -> tuple[float, float, float]:
-    """Ratio of two spreads, the first over the second, with an interval that holds for heavy tails too.
+    """The ratio of two spreads, the first over the second, with an interval that is valid even for heavy tails.
 
-    The spread of a group is the geometric mean of the distances from its median, and the interval is Welch's for the
-    mean of their logarithms. It replaces the F law, which takes groups as normal and finds differences in a fifth of
-    pairs of groups with Cauchy tails and the same spread. The idea is that of Levene's test by Brown and Forsythe
-    (1974), Journal of the American Statistical Association 69, 364-367.
+    The spread of a group is the geometric mean of the distances from its median, and the interval is Welch's interval
+    for the mean of their logarithms. It replaces the F test, which assumes normal groups and finds differences in a
+    fifth of pairs of groups with Cauchy tails and the same spread. The idea comes from Brown and Forsythe's version of
+    Levene's test (1974), Journal of the American Statistical Association 69, 364-367.
 
     Args:
-        values: first group, (n,), two or more.
-        others: second group, (m,), two or more.
-        level: of confidence.
+        values: The first group, shape (n,), two values or more.
+        others: The second group, shape (m,), two values or more.
+        level: Confidence level.
 
     Returns:
         Ratio, lower and upper bound; NaN if a group does not vary.
@@ -154,6 +154,6 @@ def spread_ratio_interval(values: Floats, others: Floats, level: float = LEVEL) 
 
 
 def _log_distances(values: Floats) -> Floats:
-    """Logarithms of the distances from the median, without those of 0, such as that of a value in the middle."""
+    """Logarithms of the distances from the median, without distances of 0, such as that of the middle value."""
     distances = np.abs(values - np.median(values))
     return np.log(distances[distances > 0])

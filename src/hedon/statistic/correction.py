@@ -1,4 +1,4 @@
-"""Several tests at once: how sure is each of them then?"""
+"""Correction of p values for several tests."""
 
 from collections.abc import Sequence
 
@@ -6,18 +6,18 @@ import numpy as np
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
-    """Holm's (1979) step-down correction: the chance of even one false alarm stays below the level.
+    """Holm's (1979) step-down correction, which controls the chance of any false positive.
 
-    It holds however the tests depend on one another.
+    It is valid for any dependence between the tests.
 
     Args:
-        p_values: one per test; NaN for a test that could not be made, which then does not count.
+        p_values: p value of each test; NaN for a test that could not be made, which is then not counted.
 
     Returns:
-        Corrected, in the given order: reject where one is at most the level.
+        Corrected p values in the given order; reject those that are at most the level.
     """
     values = np.asarray(p_values, np.float64)
-    order = np.argsort(values, kind="stable")  # NaN last
+    order = np.argsort(values, kind="stable")  # sorts NaN last
     order = order[: np.count_nonzero(~np.isnan(values))]
     corrected = np.full(len(values), np.nan)
     steps = values[order] * np.arange(len(order), 0, -1)

@@ -1,9 +1,9 @@
-"""Did a trait go further, or more in one direction, than drift alone would have carried it? Tests on scores.
+"""Did a trait move further, or more in one direction, than under drift? Tests of scores.
 
-In each world the trait is ranked among draws of what drift does there, and the rank becomes a standard normal *score*.
-Over worlds, scores that lean to one side say that the trait was pushed in a *direction* (Stouffer); scores that are
-large, whatever their sign, that it was carried a *distance* (chi-squared): a trait with two modes shows in the second
-alone. Scores that are all too small say that it was *held* (the lower tail).
+In each world, the trait is ranked among values simulated under drift, and the rank becomes a standard normal *score*.
+There are three tests over worlds. Scores that lean to one side show that the trait was pushed in a *direction*
+(Stouffer). Scores that are large, whatever their sign, show that it was carried a *distance* (chi-squared); only this
+test detects a trait with two modes. Scores that are all too small show that the trait was *held* (the lower tail).
 """
 
 import math
@@ -17,26 +17,27 @@ from hedon.statistic.interval import LEVEL, distance_interval, mean_bounds
 from hedon.statistic.law import chi2_above, chi2_below, normal_above, normal_quantile
 
 NAN = math.nan
-_TIE = 1e-6  # in units of a trait: records keep it with seven digits, walks with more
+_TIE = 1e-6  # in units of a trait, since records have seven digits and walks have more
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class ScoreTest:
-    """Scores of several worlds against drift.
+    """A test of the scores of several worlds against drift.
 
     Attributes:
         test: "direction", "distance" or "held".
-        worlds: number of scores.
-        effect: for "direction" the mean score, in standard deviations of drift; else the root mean square score, 1
-            under drift. NaN without scores, as p.
-        low, high: bounds of the effect's 95 % interval: Student's t over worlds for "direction", else from the
-            chi-squared law of normal scores; NaN with fewer than two worlds.
-        p: two-sided for "direction"; the chance of a larger effect for "distance", of a smaller one for "held".
-        p_holm: p corrected for other tests; NaN where it is not.
-        drift_low, drift_high: for "direction", bounds of the effect's 95 % interval by the spread that scores have
-            under drift, 1, as p takes it, and not by that between these worlds; NaN for other tests.
+        worlds: Number of scores.
+        effect: For "direction" the mean score, in standard deviations of drift; otherwise the root mean square score,
+            which is 1 under drift. NaN without scores.
+        low, high: Bounds of the effect's 95 % interval: Student's t over worlds for "direction", otherwise from the
+            chi-squared distribution of normal scores; NaN with fewer than two worlds.
+        p: Two-sided for "direction"; the chance of a larger effect for "distance", and of a smaller one for "held". NaN
+            without scores.
+        p_holm: p corrected for other tests; NaN if not corrected.
+        drift_low, drift_high: For "direction", bounds of the effect's 95 % interval computed, like p, from the standard
+            deviation of scores under drift, 1, instead of the one between these worlds; NaN for other tests.
     """
 
     test: str
@@ -53,16 +54,16 @@ class ScoreTest:
 def rank_score(value: float, null: Floats, rng: np.random.Generator) -> float:
     """The standard normal score of a value's rank among draws under the null hypothesis.
 
-    Among draws that equal the value, its rank is drawn at random: with a rank in their middle, a trait that hardly ever
-    changes would have scores that are all too small.
+    Ties are broken at random. With the middle rank instead, a trait that hardly ever changes would have scores that are
+    all too small.
 
     Args:
-        value: what is judged.
-        null: independent draws under the null hypothesis, (draws,).
-        rng: source of chance for ties.
+        value: The observed value.
+        null: Independent draws under the null hypothesis, shape (draws,).
+        rng: Source of random numbers for ties.
 
     Returns:
-        NaN if all draws are equal, since such a trait cannot change.
+        The score; NaN if all draws are equal, since such a trait cannot change.
     """
     if np.ptp(null) <= _TIE:
         return NAN
@@ -75,7 +76,7 @@ def score_tests(scores: Floats) -> list[ScoreTest]:
     """The three tests, in the order direction, distance, held.
 
     Args:
-        scores: one per world, shape (n,); NaN is left out.
+        scores: Score of each world, shape (n,); NaN is ignored.
     """
     scores = scores[np.isfinite(scores)]
     n = len(scores)
@@ -95,7 +96,12 @@ def score_tests(scores: Floats) -> list[ScoreTest]:
 
 
 def rank_sum_p(ranks: Sequence[int], of: Sequence[int]) -> float:
-    """Two-sided chance of ranks whose sum is this far from its middle, if each rank is as likely as any other."""
+    """The two-sided p value of a sum of ranks, if all ranks are equally likely.
+
+    Args:
+        ranks: Rank of each world.
+        of: Number of possible ranks in each world.
+    """
     chances = np.ones(1)
     for count in of:
         chances = np.convolve(chances, np.full(count, 1.0 / count))

@@ -1,8 +1,7 @@
-"""Which share of worlds dies out by a step? Kaplan & Meier (1958) over worlds, with an interval for few of them.
+"""What share of worlds dies out by a given step? The Kaplan–Meier estimate (1958) over worlds, for small samples.
 
-A world that lives when its record ends is *censored*: it may still die out before the step in question. Leaving
-it out, or counting the extinct alone, makes the share too large, because a world that died out is known to the end
-however short it was.
+A world that is alive when its record ends is *censored*: it may still die out before the step in question. Leaving
+such worlds out makes the share too large, because the fate of an extinct world is known however short it was.
 """
 
 import math
@@ -22,7 +21,7 @@ optimize: Any = load("scipy.optimize", suppress_warning=True)
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 _SEED = 1966
-"""Of exchanges, so that the same worlds give the same chance."""
+"""Seed of the permutations, so that the same worlds give the same p value."""
 
 
 @dataclass(frozen=True)
@@ -30,13 +29,13 @@ class ExtinctShare:
     """The share of worlds that is extinct by a step.
 
     Attributes:
-        share: product-limit estimate; where no world was followed so far, that by `known_until`, which is a lower
-            bound. NaN without worlds.
-        low, high: bounds of its interval; NaN without worlds.
-        worlds: all that were asked.
-        extinct: of these, by the step.
-        followed: of these, alive at the step.
-        known_until: up to which step the estimate reaches [step].
+        share: Product-limit estimate. If no world was followed up to the step, the estimate for `known_until`, which is
+            a lower bound. NaN without worlds.
+        low, high: Bounds of its interval; NaN without worlds.
+        worlds: Number of all worlds.
+        extinct: Number of worlds extinct by the step.
+        followed: Number of worlds alive at the step.
+        known_until: Last step for which there is an estimate [step].
     """
 
     share: float
@@ -51,19 +50,20 @@ class ExtinctShare:
 def extinct_share(duration: Floats, died: Flags, until: float, level: float = LEVEL) -> ExtinctShare:
     """The share extinct by a step, from worlds of any length.
 
-    The interval is the mid-p form of the beta product confidence procedure. The chance to live on past the deaths is
-    a product of beta variables, one for each step at which worlds died; half the weight lies on that product and half
-    on the product with one more factor, for a death that could follow at once. Without censoring it is the mid-p
-    interval of a share. Where no world is left at risk, nothing limits the share from above.
+    The interval is the mid-p form of the beta product confidence procedure. The chance to survive all deaths is
+    a product of beta variables, one for each step at which worlds died out. Half the weight is on that product, and
+    half on the product with one more factor, for a death that could follow immediately. Without censoring, it is the
+    mid-p interval of a share. If no world is left at risk, the share has no upper limit below 1.
 
     Source: Fay, Brittain and Proschan (2013), Biostatistics 14, 723–736; mid-p: Fay and Brittain (2016), Statistics in
-    Medicine 35, 2726–2740. Products are matched by a beta law of equal mean and variance, as proposed there.
+    Medicine 35, 2726–2740. As proposed there, products are approximated by a beta distribution with the same mean and
+    variance.
 
     Args:
-        duration: step of extinction, or at which the record of a living world ends [step], shape (n,).
-        died: whether the world died out, shape (n,).
-        until: the step by which worlds count as extinct [step].
-        level: of the interval.
+        duration: Step at which each world died out, or at which the record of a living world ends [step], shape (n,).
+        died: Whether the world died out, shape (n,).
+        until: Step by which a world must have died out to count as extinct [step].
+        level: Confidence level of the interval.
     """
     if not len(duration):
         return ExtinctShare(np.nan, np.nan, np.nan, 0, 0, 0, 0.0)
@@ -95,7 +95,7 @@ def _bounds(at_risk: NDArray[np.int64], deaths: NDArray[np.int64], followed: int
 
 
 def _product(a: Floats, b: Floats) -> tuple[float, float] | None:
-    """Parameters of the beta law with mean and variance of a product of beta variables; None for an empty product."""
+    """Parameters of the beta distribution with the mean and variance of a product of beta variables; None if empty."""
     if not len(a):
         return None
     mean = float(np.prod(a / (a + b)))
@@ -111,19 +111,19 @@ def log_rank(
     stratum: NDArray[np.int64],
     draws: int = 2000,
 ) -> float:
-    """The chance of a log-rank statistic this large or larger if two groups of worlds die out alike (Mantel 1966).
+    """The p value of a log-rank test that two groups of worlds die out alike (Mantel 1966).
 
-    Worlds exchange their groups at random within strata, since with few worlds the usual law of chi squared is off.
+    It is a permutation test within strata, since the usual chi-squared approximation is inaccurate for few worlds.
 
     Args:
-        lived: Steps up to which each world was seen, (worlds,) [step].
-        ended: Whether it died out then, (worlds,).
-        first: Whether it is of the first group, (worlds,).
-        stratum: Setting that it has beside its group, (worlds,).
-        draws: Exchanges.
+        lived: Last recorded step of each world, shape (worlds,) [step].
+        ended: Whether the world died out then, shape (worlds,).
+        first: Whether the world belongs to the first group, shape (worlds,).
+        stratum: Stratum of each world, such as its condition apart from the group, shape (worlds,).
+        draws: Number of random permutations.
 
     Returns:
-        The two-sided chance; NaN if no world died out, or a group has none.
+        The two-sided p value; NaN if no world died out, or a group has no worlds.
     """
     if not ended.any() or first.all() or not first.any():
         return math.nan

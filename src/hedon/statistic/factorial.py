@@ -1,21 +1,22 @@
-"""What does each of several two-level factors do, alone and together? Contrasts of a full factorial design.
+"""What is the effect of each of several two-level factors and of their combinations? Contrasts of a factorial design.
 
-A factor is coded −1/2 where it is absent and +1/2 where it is there; the column of several factors is the product of
-theirs; the effects are the coefficients of these columns. So
+A factor is coded −1/2 if it is absent and +1/2 if it is present. The column of several factors is the product of their
+columns, and the effects are the coefficients of these columns. Hence
 
 - the *main effect* of A is the mean of the cells with A minus the mean of those without;
-- the *interaction* A × B is the effect of A with B minus the effect of A without B, means over the other factors;
-- A × B × C is the interaction A × B with C minus that without C.
+- the *interaction* A × B is the effect of A with B minus the effect of A without B, averaged over the other factors;
+- A × B × C is the interaction A × B with C minus the same interaction without C.
 
-With all cells there, they count alike, however many worlds they hold. Box, Hunter & Hunter (2005), chapters 5 and 6,
-who halve interactions; here they are not halved, so that on a log scale an interaction is a ratio of ratios.
+If all cells are present, they have equal weight, however many worlds they contain. See Box, Hunter & Hunter (2005),
+chapters 5 and 6. They halve interactions; we do not, so that on a log scale an interaction is a ratio of ratios.
 
-The error is that of worlds within cells, each cell with a variance of its own (Welch, 1947; degrees of freedom by
-Satterthwaite, 1946). Seeds that several cells share are not taken for blocks, which errs on the safe side. Where cells
-are missing, an effect is estimated by least squares in the largest model that determines it: all effects up to some
-order, those of higher order taken to be none. It is then the mean of what its factors do in some cells only, and is
-given only if no effect of other factors is mixed in, of whatever order: A may be estimated from two cells that differ
-in A alone, but never from cells with B, with C and with all three. What no model determines is left out.
+The error comes from the variation of worlds within cells, and each cell has its own variance (Welch, 1947; degrees of
+freedom by Satterthwaite, 1946). Seeds shared by several cells are not treated as blocks, which is conservative.
+
+If cells are missing, an effect is estimated by least squares in the largest model that determines it: all effects up to
+some order, with effects of higher order assumed to be zero. The estimate is then an average over only some cells. It is
+reported only if no effect of other factors, of any order, is mixed in: A may be estimated from two cells that differ
+only in A, but never from cells with B, with C and with all three. Effects that no model determines are left out.
 """
 
 import itertools
@@ -31,13 +32,13 @@ from hedon.statistic.interval import LEVEL
 from hedon.statistic.law import t_above, t_quantile
 
 Cell = tuple[bool, ...]
-"""Which factors are there, in their order."""
+"""Whether each factor is present, in the order of the factors."""
 Factors = tuple[int, ...]
-"""Indices of the factors of an effect, ascending."""
+"""Indices of the factors of an effect, in ascending order."""
 
 PER_CELL = 3
-"""Worlds of each cell that an interval needs where cells differ in number: with two in a small, variable cell the
-chance of a false alarm is 12 % instead of 5."""
+"""Worlds per cell that an interval requires if cells differ in size. With two worlds in a small, variable cell, the
+false positive rate would be 12 % instead of 5 %."""
 NAN = math.nan
 _TOLERANCE = 1e-9
 
@@ -47,16 +48,17 @@ class Effect:
     """One effect on one response, on the scale of the values given.
 
     Attributes:
-        factors: whose effect or interaction it is.
-        order: of its model; effects of higher order are taken to be none.
-        estimate: see above.
-        low, high: bounds of its 95 % interval, Student's t; NaN unless each cell has `PER_CELL` worlds, or all cells
-            have equally many and at least two.
-        p: two-sided; NaN likewise, and where worlds of all cells agree.
-        freedom: of its t.
-        p_holm: corrected for all effects of the fit.
-        seed_low, seed_high: least and largest of the same effect in single seeds; NaN where no seed determines it.
-        seeds: that have.
+        factors: The factors whose effect or interaction it is.
+        order: Order of its model; effects of higher order are assumed to be zero.
+        estimate: The estimated effect, as defined for this module.
+        low, high: Bounds of its 95 % interval (Student's t); NaN unless each cell has `PER_CELL` worlds, or all cells
+            have the same number of worlds and at least two.
+        p: Two-sided p value; NaN likewise, and if worlds agree within all cells.
+        freedom: Degrees of freedom of its t.
+        p_holm: p after Holm correction for all effects of the fit.
+        seed_low, seed_high: Smallest and largest estimate of the effect from single seeds; NaN if no seed determines
+            it.
+        seeds: Number of seeds that determine it.
     """
 
     factors: Factors
@@ -77,8 +79,8 @@ class FactorialFit:
     """The effects of one response.
 
     Attributes:
-        effects: by order, then in the order of the factors.
-        left_out: what the cells cannot tell.
+        effects: The estimated effects, by order and then in the order of the factors.
+        left_out: Effects that the cells do not determine.
     """
 
     effects: tuple[Effect, ...]
@@ -89,8 +91,8 @@ def fit_factorial(cells: Mapping[Cell, Mapping[int, float]], factors: int) -> Fa
     """Estimates all effects that the cells determine.
 
     Args:
-        cells: for each cell with values, the value of each seed.
-        factors: how many there are.
+        cells: For each nonempty cell, the value of each seed.
+        factors: Number of factors.
     """
     filled = {cell: values for cell, values in cells.items() if values}
     rows = [(cell, value) for cell, values in filled.items() for value in values.values()]
@@ -115,7 +117,7 @@ def fit_factorial(cells: Mapping[Cell, Mapping[int, float]], factors: int) -> Fa
 
 
 def _variances(cells: Mapping[Cell, Mapping[int, float]]) -> NDArray[np.float64]:
-    """Of the worlds of each cell; NaN where some cell has too few for the level to hold."""
+    """Variance of the worlds in each cell; NaN if a cell has too few worlds for the level to hold."""
     counts = {len(values) for values in cells.values()}
     if min(counts, default=0) < (2 if len(counts) == 1 else PER_CELL):
         return np.full(len(cells), NAN)
@@ -126,8 +128,8 @@ def _freedom(parts: NDArray[np.float64], counts: NDArray[np.int_]) -> float:
     """Satterthwaite's degrees of freedom.
 
     Args:
-        parts: what each world adds to the variance of an effect, (worlds,).
-        counts: worlds of its cell, (worlds,).
+        parts: Contribution of each world to the variance of an effect, (worlds,).
+        counts: Number of worlds in the cell of each world, (worlds,).
     """
     # The n worlds of a cell add n equal parts v, so (n v)² / (n − 1) is the sum over them of n v² / (n − 1).
     spread = float((parts**2 * counts / (counts - 1.0)).sum()) if counts.min(initial=2) > 1 else NAN
@@ -138,15 +140,15 @@ def all_effects(factors: int, order: int | None = None) -> list[Factors]:
     """All effects of some factors up to an order, by order.
 
     Args:
-        factors: how many.
-        order: of the highest interaction; None for all.
+        factors: Number of factors.
+        order: Order of the highest interaction; None for all orders.
     """
     orders = range(1, (factors if order is None else order) + 1)
     return [group for k in orders for group in itertools.combinations(range(factors), k)]
 
 
 def _solve(cells: Sequence[Cell], factors: int) -> dict[Factors, tuple[int, NDArray[np.float64]]]:
-    """Which effects some worlds can tell: for each, the order of its model and the weights of the worlds' values."""
+    """The effects that some worlds determine, each with the order of its model and the weights of the worlds."""
     solved: dict[Factors, tuple[int, NDArray[np.float64]]] = {}
     if not cells:
         return solved
@@ -156,7 +158,8 @@ def _solve(cells: Sequence[Cell], factors: int) -> dict[Factors, tuple[int, NDAr
         model = [(), *all_effects(factors, order)]
         inverse = np.linalg.pinv(_design(cells, model))
         for group, weights in list(zip(model, inverse, strict=True))[1:]:
-            # What the estimate holds of each effect: itself whole, none of those that do not include its factors.
+            # The share of each true effect in the estimate: 1 for the effect itself, and 0 for all effects that do not
+            # include its factors.
             holds = dict(zip(everything, weights @ whole, strict=True))
             strange = max(abs(share) for effect, share in holds.items() if not set(group) <= set(effect))
             if group not in solved and abs(holds[group] - 1.0) < _TOLERANCE and strange < _TOLERANCE:
@@ -165,7 +168,7 @@ def _solve(cells: Sequence[Cell], factors: int) -> dict[Factors, tuple[int, NDAr
 
 
 def _in_seeds(cells: Mapping[Cell, Mapping[int, float]], factors: int, group: Factors, order: int) -> list[float]:
-    """An effect in each single seed whose cells determine it by a model of the same order."""
+    """Estimates of an effect from each single seed whose cells determine it with a model of the same order."""
     found = []
     for seed in sorted({seed for values in cells.values() for seed in values}):
         mine = [cell for cell, values in cells.items() if seed in values]

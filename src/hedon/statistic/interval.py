@@ -1,4 +1,4 @@
-"""How sure is a mean, a share or a spread over worlds?"""
+"""How precisely is a mean, a share or a spread over worlds known?"""
 
 import math
 from collections.abc import Iterable
@@ -12,21 +12,21 @@ from hedon.statistic.minimum import FOR_INTERVAL
 
 LEVEL = 0.95
 Range = tuple[float, float]
-"""Least and greatest possible value."""
+"""Smallest and largest possible value."""
 ANY: Range = (-math.inf, math.inf)
 AMOUNT: Range = (0.0, math.inf)
-"""Of counts, rates, energies and lifetimes."""
+"""Range of counts, rates, energies and lifetimes."""
 SHARE: Range = (0.0, 1.0)
 
 
 @dataclass(frozen=True)
 class Interval:
-    """A mean over worlds with its interval of confidence.
+    """A mean over worlds with its confidence interval.
 
     Attributes:
-        mean: None where no world has a value.
-        low, high: bounds of the interval; None with fewer than `FOR_INTERVAL` worlds.
-        worlds: how many have a value.
+        mean: The mean; None if no world has a value.
+        low, high: Bounds of the interval; None with fewer than `FOR_INTERVAL` worlds.
+        worlds: Number of worlds with a value.
     """
 
     mean: float | None
@@ -36,15 +36,15 @@ class Interval:
 
 
 def mean_interval(values: Iterable[float | None], level: float = LEVEL, within: Range = ANY) -> Interval:
-    """Mean and Student's t interval over independent worlds.
+    """The mean and Student's t interval over independent worlds.
 
-    Worlds are the unit: agents of one world are relatives, so an interval over agents would be far too narrow.
+    Worlds are the sample: agents of one world are relatives, so an interval over agents would be far too narrow.
 
     Args:
-        values: one per world; None and NaN are left out.
-        level: probability with which such an interval covers the true mean, if worlds are normally distributed.
-        within: what values are possible. The interval is cut there, which leaves its level as it is, since no true
-            mean lies beyond.
+        values: Value of each world; None and NaN are ignored.
+        level: Confidence level, which assumes that worlds are normally distributed.
+        within: Possible values. The interval is cut to them, which does not change its level, since the true mean
+            cannot be beyond.
     """
     known = np.array([value for value in values if value is not None and math.isfinite(value)], np.float64)
     if known.size == 0:
@@ -57,7 +57,11 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL, within: 
 
 
 def mean_bounds(values: Iterable[float | None], level: float = LEVEL) -> tuple[float, float, float]:
-    """Mean and bounds of `mean_interval`, with NaN for what has no value.
+    """The mean and bounds of `mean_interval`, with NaN for missing values.
+
+    Args:
+        values: Value of each world; None and NaN are ignored.
+        level: Confidence level.
 
     Returns:
         Mean, lower and upper bound.
@@ -68,17 +72,17 @@ def mean_bounds(values: Iterable[float | None], level: float = LEVEL) -> tuple[f
 
 
 def share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, float]:
-    """Jeffreys' interval of a share: the middle of the beta law that the count leaves of a prior Beta(1/2, 1/2).
+    """Jeffreys' interval of a share: the central part of the posterior for the prior Beta(1/2, 1/2).
 
-    It covers as often as promised on average over shares, and at single shares a little more or less, where Clopper
-    and Pearson's (1934) covers at least so often and is wider: five of five give 0.62 … 1 instead of 0.48 … 1. At no
-    world and at all worlds the outer bound is 0 or 1. Source: Brown, Cai and DasGupta (2001), Statistical Science 16,
-    101–133, section 4.1.
+    Its coverage equals the level on average over shares, and is slightly higher or lower for single shares. Clopper
+    and Pearson's (1934) interval always covers at least as often and is wider: five of five give 0.62 … 1 instead of
+    0.48 … 1. If the count is zero or complete, the outer bound is 0 or 1. Source: Brown, Cai and DasGupta (2001),
+    Statistical Science 16, 101–133, section 4.1.
 
     Args:
-        count: how many have it.
-        of: how many there are.
-        level: of confidence.
+        count: Number of worlds with the property.
+        of: Number of all worlds.
+        level: Confidence level.
 
     Returns:
         Lower and upper bound.
@@ -91,6 +95,11 @@ def share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, fl
 def exact_share_interval(count: int, of: int, level: float = LEVEL) -> tuple[float, float]:
     """Clopper and Pearson's (1934) interval of a share, for verdicts: each bound is an exact one-sided binomial test.
 
+    Args:
+        count: Number of worlds with the property.
+        of: Number of all worlds.
+        level: Confidence level.
+
     Returns:
         Lower and upper bound.
     """
@@ -100,11 +109,11 @@ def exact_share_interval(count: int, of: int, level: float = LEVEL) -> tuple[flo
 
 
 def spread_interval(values: NDArray[np.float64], level: float = LEVEL) -> tuple[float, float, float]:
-    """Standard deviation and its interval from the chi-squared law, if the values are normally distributed.
+    """The standard deviation and its chi-squared interval, which assumes normally distributed values.
 
     Args:
-        values: (n,), two or more.
-        level: of confidence.
+        values: The values, shape (n,), two or more.
+        level: Confidence level.
 
     Returns:
         Standard deviation, lower and upper bound.
@@ -114,11 +123,11 @@ def spread_interval(values: NDArray[np.float64], level: float = LEVEL) -> tuple[
 
 
 def distance_interval(values: NDArray[np.float64], level: float = LEVEL) -> tuple[float, float, float]:
-    """Root mean square and its interval from the chi-squared law, if the values are normal around 0.
+    """The root mean square and its chi-squared interval, which assumes normally distributed values with mean 0.
 
     Args:
-        values: (n,), one or more.
-        level: of confidence.
+        values: The values, shape (n,), one or more.
+        level: Confidence level.
 
     Returns:
         Root mean square, lower and upper bound.

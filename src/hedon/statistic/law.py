@@ -1,6 +1,6 @@
 """Quantiles and tails of common distributions.
 
-Computed by `scipy.special`: bit-identical to `scipy.stats`, which takes half a second to load.
+Computed with `scipy.special`; the results are bit-identical to `scipy.stats`, which takes half a second to load.
 """
 
 from scipy import special

@@ -1,11 +1,11 @@
-"""How many independent worlds a number needs before it is shown: the one table for tools, scoreboards and guides."""
+"""How many independent worlds a number needs before it is shown: the one source for tools, scoreboards and guides."""
 
 FOR_INTERVAL = 5
-"""Worlds from which a confidence interval over worlds is shown; below it, the output says how many are needed."""
+"""Smallest number of worlds for a confidence interval over worlds; with fewer, the output states how many it needs."""
 FOR_VERDICT = 30
-"""Worlds, or pairs of worlds, from which a study answers yes or no."""
+"""Smallest number of worlds, or pairs of worlds, with which a study answers yes or no."""
 FOR_FULL_LENGTH = 6
-"""Worlds from which a claim about full-length runs gets a verdict: six that agree bound a share above one half."""
+"""Smallest number of worlds for a verdict on full-length runs: if six agree, the share is bounded above one half."""
 
 
 def worlds_needed_note(worlds: int, needed: int = FOR_INTERVAL) -> str:

@@ -1,14 +1,16 @@
-"""Has the distribution of a weight over worlds one mode, or more? Hartigan & Hartigan's (1985) dip test.
+"""Does the distribution of a weight over worlds have one mode or more? Hartigan & Hartigan's (1985) dip test.
 
-The *dip* is the least distance between the empirical distribution and any distribution with a single mode: the
-largest difference between the two cumulative curves. Its null distribution is simulated from the uniform, the
-distribution with one mode that dips most, so that other shapes are called two modes less often than promised.
+The *dip* is the smallest distance between the empirical distribution and any distribution with a single mode, measured
+as the largest difference between the two cumulative curves. Its null distribution is simulated from the uniform
+distribution, which has the largest dip of all distributions with one mode. For other shapes the test is therefore
+conservative.
 
-Why this test: it asks for modes and nothing else, where a mixture of two normals also fits one skewed hump; it has no
-bandwidth; and it holds its level with few worlds and at hard limits such as those of the weights, where Silverman's
-test, tried as well, called a flat distribution of 40 worlds bimodal three times as often as promised.
-Not finding a second mode is no evidence that there is one: with few worlds the test has little power, since chance also
-decides how many worlds end at each mode. `power` says how often two clear modes would be found.
+Reasons for this test: it depends only on modes, whereas a mixture of two normals also fits a single skewed hump; it
+needs no bandwidth; and it keeps its level with few worlds and at hard limits such as the limits of weights. Silverman's
+test, which we also tried, called a flat distribution of 40 worlds bimodal three times as often as its level allows.
+
+Failure to find a second mode is not evidence of a single mode. With few worlds the test has little power, since chance
+also decides how many worlds end at each mode. `power` is the chance that two clear modes would be found.
 """
 
 from dataclasses import dataclass
@@ -20,7 +22,7 @@ from numpy.typing import NDArray
 
 LEVEL = 0.05
 _NULL_SAMPLES = 2000
-_CLEAR = 6.0  # standard deviations between two clear modes, of worlds around each
+_CLEAR = 6.0  # distance between two clear modes, in standard deviations of worlds around each
 _POWER_TRIALS = 400
 _FEWEST = 4  # worlds: two at each of two modes
 _SEED = 1985  # of the null distribution, so that equal worlds get equal answers
@@ -33,14 +35,14 @@ class Modes:
     """Whether values have one mode or more.
 
     Attributes:
-        worlds: number of values.
-        answer: "two" (one mode is rejected at 5 %) or "undecided".
-        dip: the statistic; NaN for fewer than four values, as p.
-        p: chance of such a dip if there is one mode.
-        power: chance that two clear modes, at which a world ends with equal chance, would have been found.
-        low, high: mean of the values on either side of the widest gap that leaves two on each; NaN unless the
+        worlds: Number of values.
+        answer: "two" (a single mode is rejected at 5 %) or "undecided".
+        dip: The test statistic; NaN for fewer than four values.
+        p: Chance of a dip at least this large under a single mode; NaN for fewer than four values.
+        power: Chance that two clear modes, each equally likely for a world, would have been found.
+        low, high: Means of the values on either side of the widest gap that leaves two on each side; NaN unless the
             answer is "two".
-        low_worlds, high_worlds: how many are there; 0 likewise.
+        low_worlds, high_worlds: Number of values on either side; 0 unless the answer is "two".
     """
 
     worlds: int
@@ -55,10 +57,10 @@ class Modes:
 
 
 def modes(values: Floats) -> Modes:
-    """Tests one mode against more.
+    """Tests a single mode against several.
 
     Args:
-        values: one per world, (n,); NaN is left out.
+        values: Value of each world, shape (n,); NaN is ignored.
     """
     values = np.sort(values[np.isfinite(values)])
     count = len(values)
@@ -75,19 +77,19 @@ def modes(values: Floats) -> Modes:
 
 
 def dip(values: Floats) -> float:
-    """The dip of a sample, from 1/(2n), for evenly spread values, to 1/4, for two points.
+    """The dip of a sample, from 1/(2n) for evenly spread values to 1/4 for two points.
 
     Args:
-        values: ascending, shape (n,), n > 0.
+        values: The sample in ascending order, shape (n,), n > 0.
     """
     found = diptest.dipstat(values, allow_zero=False, sort_x=False)
-    assert isinstance(found, float)  # a tuple only with its full output
+    assert isinstance(found, float)  # a tuple only if the full output is requested
     return found
 
 
 @cache
 def _null_and_power(count: int) -> tuple[Floats, float]:
-    """Dips of uniform samples, and how often two clear modes dip further than 95 % of these."""
+    """Dips of uniform samples, and how often samples with two clear modes exceed 95 % of them."""
     rng = np.random.default_rng(_SEED)
     null = np.array([dip(np.sort(rng.random(count))) for _ in range(_NULL_SAMPLES)])
     limit = np.quantile(null, 1.0 - LEVEL)

@@ -1,9 +1,9 @@
-"""How many worlds does it take to see an effect, by the test that decides?
+"""How many worlds are needed to find an effect with the test that is used?
 
-Pairs are decided by exchanging their signs. Such a test has few values of p if there are few pairs: with five, the
-least is 2/2⁵, so that no effect is ever found at 0.05. Independent worlds are decided by Welch's t, which has fewer
-degrees of freedom than Student's. The power of both is simulated up to `SIMULATED` worlds; from there on, it is that of
-Student's t test within a point.
+Pairs are compared with a sign-flip permutation test. With few pairs, such a test has few possible p values: with five
+pairs the smallest is 2/2⁵, so no effect is ever significant at 0.05. Independent worlds are compared with Welch's t
+test, which has fewer degrees of freedom than Student's. The power of both tests is simulated up to `SIMULATED` worlds.
+Beyond, it equals the power of Student's t test to within one percentage point.
 """
 
 import math
@@ -21,45 +21,58 @@ optimize: Any = load("scipy.optimize", suppress_warning=True)
 stats: Any = load("scipy.stats", suppress_warning=True)
 
 MOST = 10_000_000
-"""Worlds beyond which none are counted."""
+"""Largest number of worlds considered."""
 SIMULATED = 12
-"""Worlds of each condition up to which the power is simulated."""
+"""Largest number of worlds per condition for which the power is simulated."""
 _TRIES = 4000
-"""Simulated data sets; the error of a power is below 0.008."""
+"""Number of simulated data sets; the standard error of a power is below 0.008."""
 _SEED = 20261127
 _EQUAL = 1e-9
-"""Relative difference below which two sums are the same number, computed in two ways."""
+"""Relative difference below which two sums count as equal, since they are computed in different ways."""
 CERTAIN = 10.0
-"""Standard errors by which an effect lies beyond the edge of a test that cannot miss it."""
+"""Distance of an effect beyond the critical value at which the power counts as 1, in standard errors."""
 
 
 def t_test_power(effect: float, worlds: float, level: float = 0.05, *, paired: bool) -> float:
-    """The chance that a two-sided t test finds an effect. Source: Cohen (1988), sections 2.3 and 2.4."""
+    """The power of a two-sided t test. Source: Cohen (1988), sections 2.3 and 2.4.
+
+    Args:
+        effect: Difference of the means, in standard deviations.
+        worlds: Number of pairs, or of worlds per condition.
+        level: Significance level.
+        paired: Whether worlds are compared in pairs.
+    """
     degrees = worlds - 1 if paired else 2 * worlds - 2
     shift = abs(effect) * math.sqrt(worlds if paired else worlds / 2)
     edge = t_quantile(1.0 - level / 2, degrees)
-    if shift - edge > CERTAIN:  # where the noncentral law has no numbers
+    if shift - edge > CERTAIN:  # where the noncentral t distribution cannot be evaluated
         return 1.0
-    far = float(stats.nct.cdf(-edge, degrees, shift))  # by the wrong sign; NaN where too small for a number
+    far = float(stats.nct.cdf(-edge, degrees, shift))  # significant with the wrong sign; NaN if too small to represent
     return float(stats.nct.sf(edge, degrees, shift)) + (0.0 if math.isnan(far) else far)
 
 
 def pair_test_power(effect: float, pairs: int, level: float = 0.05) -> float:
-    """The chance that exchanging the signs of pairs finds an effect, if differences are normally distributed."""
+    """The power of a sign-flip permutation test of pairs with normally distributed differences.
+
+    Args:
+        effect: Mean difference, in standard deviations of pairs.
+        pairs: Number of pairs.
+        level: Significance level.
+    """
     if pairs > SIMULATED:
         return t_test_power(effect, pairs, level, paired=True)
     if 2.0 ** (1 - pairs) > level:
         return 0.0
     noise, signs = _draws(pairs)
     values = noise + abs(effect)
-    sums = np.abs(values @ signs.T)  # half of all signs: the others have the same size
+    sums = np.abs(values @ signs.T)  # half of all signs, since the other half gives the same sizes
     extreme = (sums >= sums[:, :1] * (1.0 - _EQUAL)).mean(axis=1)
     return float((extreme <= level).mean())
 
 
 @cache
 def _draws(pairs: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Standard normal differences, (tries, pairs), and all signs of pairs but for a common one, the plain sum first."""
+    """Standard normal differences, (tries, pairs), and all sign patterns up to a common sign, all positive first."""
     noise = np.random.default_rng([_SEED, pairs]).normal(size=(_TRIES, pairs))
     bits = (np.arange(2 ** (pairs - 1))[:, None] >> np.arange(pairs)) & 1
     return noise, 1.0 - 2.0 * bits
@@ -70,13 +83,13 @@ Design = Literal["pairs", "independent", "alone"]
 
 
 def contrast_power(effect: float, worlds: int, design: Design, level: float = 0.05) -> float:
-    """The chance that an effect is found by the test that decides its design.
+    """The power of the test that a design uses.
 
     Args:
-        effect: difference of the means, in standard deviations: of pairs, or of worlds within a condition.
-        worlds: of each condition, two or more.
-        design: how worlds are compared.
-        level: of the test.
+        effect: Difference of the means, in standard deviations of pairs, or of worlds within a condition.
+        worlds: Number of worlds per condition, two or more.
+        design: How worlds are compared.
+        level: Significance level.
     """
     if design == "pairs":
         return pair_test_power(effect, worlds, level)
@@ -88,13 +101,13 @@ def contrast_power(effect: float, worlds: int, design: Design, level: float = 0.
 
 
 def worlds_needed(effect: float, design: Design, power: float = 0.8, level: float = 0.05) -> int | None:
-    """The least worlds of each condition with which an effect is found as often as asked; None if beyond `MOST`.
+    """The smallest number of worlds per condition that gives the required power; None if larger than `MOST`.
 
     Args:
-        effect: as for `contrast_power`.
-        design: how worlds are compared.
-        power: chance to find it, above the level.
-        level: of the test.
+        effect: Difference of the means, as for `contrast_power`.
+        design: How worlds are compared.
+        power: Required power, larger than the level.
+        level: Significance level.
     """
     if effect == 0 or not math.isfinite(effect) or contrast_power(effect, MOST, design, level) < power:
         return None
@@ -107,16 +120,16 @@ def worlds_needed(effect: float, design: Design, power: float = 0.8, level: floa
 
 
 def effect_seen(worlds: int, design: Design, power: float = 0.8, level: float = 0.05) -> float:
-    """The least effect, in standard deviations, that some worlds of each condition find as often as asked.
+    """The smallest effect, in standard deviations, that a number of worlds can find with the required power.
 
     Args:
-        worlds: of each condition, two or more.
-        design: how worlds are compared.
-        power: chance to find it.
-        level: of the test.
+        worlds: Number of worlds per condition, two or more.
+        design: How worlds are compared.
+        power: Required power.
+        level: Significance level.
 
     Returns:
-        The effect; infinite if so few worlds find none, however large.
+        The effect; infinite if so few worlds cannot find any effect.
     """
     most = 1e3
     if contrast_power(most, worlds, design, level) < power:

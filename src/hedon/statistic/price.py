@@ -1,13 +1,13 @@
 """How much of the change from parents to offspring is selection, and how much is mutation? Price (1970, 1972).
 
-For a cohort of agents with weight z, each having w children whose mean weight differs from its own by Δz, the
+Consider a cohort of agents with weight z, each with w children whose mean weight differs from its own by Δz. The
 change from the mean of the cohort to the mean of all its children is exactly
 
     Δz̄ = Cov(w, z) / w̄ + E(w·Δz) / w̄,
 
-selection plus transmission. Nothing learned is inherited, so transmission is mutation alone: of mean zero, but for
-the clipping at the weight limit, and heavy-tailed, since mutations are Cauchy. Selection holds no mutation, so it is
-the less noisy of the two.
+selection plus transmission. Nothing learned is inherited, so transmission consists only of mutation. Its mean is zero,
+except for clipping at the weight limit, and it is heavy-tailed, since mutations are Cauchy. Selection contains no
+mutation, so it is the less noisy of the two.
 """
 
 from typing import Any
@@ -20,14 +20,14 @@ def price(weight: NDArray[np.float64], parent: NDArray[np.int64], cohort: NDArra
     """Price's equation for one weight.
 
     Args:
-        weight: of each agent, (n,).
-        parent: position of each agent's parent, −1 where it has none, (n,).
-        cohort: who belongs to the cohort of parents, (n,).
+        weight: Weight of each agent, shape (n,).
+        parent: Position of each agent's parent, −1 if it has none, shape (n,).
+        cohort: Whether each agent belongs to the cohort of parents, shape (n,).
 
     Returns:
-        parents, agents of the cohort, with or without children; offspring, their children; change, mean of the children
-        minus mean of the cohort; selection, Cov(w, z) / w̄; transmission, E(w·Δz) / w̄; residual, what these two leave of
-        the change: rounding alone. NaN without children.
+        parents, the number of agents in the cohort, with or without children; offspring, the number of their children;
+        change, mean of the children minus mean of the cohort; selection, Cov(w, z) / w̄; transmission, E(w·Δz) / w̄;
+        residual, the change minus these two, which is only rounding. NaN without children.
     """
     members = np.flatnonzero(cohort)
     children = np.flatnonzero((parent >= 0) & cohort[parent])

@@ -1,18 +1,18 @@
-"""Is a world's mean weight held near a value? Ornstein–Uhlenbeck against Brownian motion, over several worlds.
+"""Is the mean weight of worlds held near a value? Ornstein–Uhlenbeck against Brownian motion, over several worlds.
 
-At equal intervals, a mean that is pulled back to an optimum θ moves by x' − x = (1 − exp(−α))·(θ − x) + shock; without
-a pull α is 0 and shocks alone are left. One α and one θ are fitted to all worlds at once, by least squares, each world
+If a mean is pulled back to an optimum θ, it moves at equal intervals by x' − x = (1 − exp(−α))·(θ − x) + shock. Without
+a pull α is 0, and only shocks remain. One α and one θ are fitted to all worlds together by least squares, each world
 in units of its own steps.
 
-What a neutral gene does in the same worlds is the null hypothesis, and its steps are the shocks: where mutations have
-heavy tails, a mutant far out comes, shifts the mean and mostly leaves no line, which looks like a pull to normal
-shocks. A fit also finds some pull in a Brownian motion of finite length. So courses of neutral genes, walked down the
-same pedigrees, are fitted likewise. Pulled by some α, they tell which estimates that α gives, and this is turned
-around: the strength is the α whose median estimate is the one seen, and its interval holds the α for which the one
-seen is not too far out.
+Neutral genes in the same worlds provide the null hypothesis, and their steps are the shocks. This is needed for two
+reasons. If mutations have heavy tails, an extreme mutant shifts the mean and then mostly leaves no descendants, which
+looks like a pull if shocks are assumed to be normal. A fit also finds some pull in a Brownian motion of finite length.
+Neutral genes, walked down the same pedigrees, are therefore fitted in the same way. Simulating them with a pull α shows
+which estimates that α gives. This is then inverted: the strength is the α whose median estimate equals the observed
+one, and its interval contains every α for which the observed estimate is not too extreme.
 
-Sources: Hansen (1997), Evolution 51, 1341–1351, for the model; Andrews (1993), Econometrica 61, 139–165, for estimates
-that are right in the median.
+Sources: Hansen (1997), Evolution 51, 1341–1351, for the model; Andrews (1993), Econometrica 61, 139–165, for
+median-unbiased estimates.
 """
 
 from collections.abc import Sequence
@@ -24,10 +24,10 @@ from numpy.typing import NDArray
 from hedon.statistic.interval import LEVEL
 
 SHOWN_LEVEL = 0.05
-"""An optimum is given only where a pull is found at this level: a gene that drifts has none."""
+"""Level at which a pull must be found for an optimum to be reported, since a drifting gene has none."""
 _RATES = np.concatenate([[0.0], np.geomspace(1e-3, 3.0, 25)])
-"""Strengths that are tried [1/interval]: a memory of 1000 intervals to one of a third."""
-_ROUNDING = 1e-12  # share of a sum of squares that is 0
+"""Strengths that are tried [1/interval], for memories of 1000 intervals to a third of one."""
+_ROUNDING = 1e-12  # share of a sum of squares that counts as 0
 
 Floats = NDArray[np.float64]
 
@@ -37,13 +37,13 @@ class Reversion:
     """Whether the mean weights of some worlds are held near a value.
 
     Attributes:
-        worlds: that enter it.
-        intervals: between two values of a course, over all worlds.
-        strength: α [1/interval]; 0 where nothing pulls.
-        strength_low, strength_high: bounds of its 95 % interval; infinite where the pull may be too fast to see.
-        optimum: θ, in units of the weight; NaN where no pull was found, as its bounds.
-        optimum_low, optimum_high: bounds of its 95 % interval.
-        p: one-sided chance of so strong a pull among neutral genes.
+        worlds: Number of worlds used.
+        intervals: Number of intervals between values, over all worlds.
+        strength: α [1/interval]; 0 without a pull.
+        strength_low, strength_high: Bounds of its 95 % interval; infinite if the pull may be too fast to measure.
+        optimum: θ, in units of the weight; NaN if no pull was found.
+        optimum_low, optimum_high: Bounds of its 95 % interval; NaN if no pull was found.
+        p: One-sided p value: the chance of so strong a pull among neutral genes.
     """
 
     worlds: int
@@ -61,14 +61,14 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
     """Fits a common pull and a common optimum to the courses of some worlds.
 
     Args:
-        courses: mean weight at equal intervals, per world, shape (times,); worlds may differ in length, not in the
-            interval. A course that is not usable is left out.
-        neutral: courses of neutral genes of the same world at the same times, per world, shape (walks, times); the
+        courses: Mean weight of each world at equal intervals, shape (times,); worlds may differ in length but not in
+            the interval. A course that is not usable is left out.
+        neutral: Courses of neutral genes of the same worlds at the same times, each of shape (walks, times), with the
             same number of walks in each.
-        level: of the intervals.
+        level: Confidence level of the intervals.
 
     Returns:
-        None where no world is left.
+        The fit; None if no usable world is left.
     """
     usable = [i for i, course in enumerate(courses) if is_usable(course)]
     if not usable:
@@ -103,19 +103,19 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
 
 
 def is_usable(course: Floats) -> bool:
-    """Whether a course says anything of a pull: it has four values or more, and changes before its last step.
+    """Whether a course is informative about a pull: it has at least four values, and changes before its last step.
 
     Args:
-        course: mean weight at equal intervals, (times,).
+        course: Mean weight at equal intervals, shape (times,).
     """
     return len(course) > 3 and float(np.ptp(course[:-1])) > 0
 
 
 def _sums(courses: Floats) -> Floats:
-    """What a fit needs of the courses of one world, (samples, times): shape (6, samples).
+    """The sums over the courses of one world, (samples, times), that a fit needs: shape (6, samples).
 
-    Number of steps; sums of the values before the steps, of their squares, of the steps, of the products of both, and
-    of the squares of the steps.
+    They are the number of steps, and the sums of the values before the steps, of their squares, of the steps, of the
+    products of both, and of the squares of the steps.
     """
     step, value = np.diff(courses, axis=1), courses[:, :-1]
     terms = (np.ones_like(step), value, value**2, step, value * step, step**2)
@@ -123,18 +123,18 @@ def _sums(courses: Floats) -> Floats:
 
 
 def _fit(sums: Sequence[Floats]) -> tuple[Floats, Floats, Floats]:
-    """Slope of the step against the value, that slope over its standard error, and where the step is 0.
+    """The slope of the step against the value, that slope over its standard error, and the value where the step is 0.
 
     Args:
-        sums: per world, as `_sums` gives them, shape (6, ...).
+        sums: Sums of each world from `_sums`, shape (6, ...).
 
     Returns:
-        Each (...).
+        Three arrays of shape (...).
     """
     count = sum(int(each[0].flat[0]) for each in sums)
     one, x, xx, y, xy, yy = np.sum([each * _per_step(each) for each in sums], axis=0)
     spread = xx - x**2 / one
-    varies = spread > _ROUNDING * xx  # else values before the last step are all the same, and say nothing of a pull
+    varies = spread > _ROUNDING * xx  # otherwise all values before the last step are equal, and uninformative
     spread = np.where(varies, spread, 1.0)
     slope = np.where(varies, (xy - x * y / one) / spread, 0.0)
     rest = yy - y**2 / one - slope**2 * spread
@@ -144,7 +144,7 @@ def _fit(sums: Sequence[Floats]) -> tuple[Floats, Floats, Floats]:
 
 
 def _per_step(sums: Floats) -> Floats:
-    """What brings squares into units of the mean square step of a world and a sample; 1 where nothing moves."""
+    """Factors that convert squares to units of the mean square step of a world and a sample; 1 without movement."""
     moves = sums[5] > 0
     return np.where(moves, sums[0] / np.where(moves, sums[5], 1.0), 1.0)
 
@@ -158,9 +158,10 @@ def _size(course: Floats) -> Floats:
 def _pulled(
     seen: Sequence[Floats], shocks: Sequence[Floats], rates: Floats, optima: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Fits to courses that begin where those seen do, take the shocks, and are pulled: each (rates, samples).
+    """Fits to simulated courses with the observed starts, the given shocks and a pull: each (rates, samples).
 
-    Step by step for all rates and samples, which stay in the processor's cache: four times as fast as course by course.
+    All rates and samples advance together, step by step, so that they stay in the processor's cache; this is four times
+    as fast as simulating course by course.
     """
     kept = np.exp(-rates)[:, None]
     worlds = []
@@ -181,7 +182,7 @@ def _pulled(
 
 
 def _best_optimum(seen: Sequence[Floats], pull: float) -> float:
-    """The optimum that fits best if a share of the distance to it is gone after each interval."""
+    """The best-fitting optimum if each interval removes a share `pull` of the distance to it."""
     weights = np.array([(len(c) - 1) / float(_size(c[None])[0]) ** 2 for c in seen])
     means = np.array([c[:-1].mean() + (np.diff(c).mean() / pull if pull > 0 else 0.0) for c in seen])
     return float(weights @ means / weights.sum())
@@ -192,7 +193,7 @@ def _reachable(seen: Sequence[Floats], optimum: float) -> float:
 
 
 def _rate_where(estimates: Floats, seen: float) -> float:
-    """The rate at which a quantile of the estimates is the one seen; 0 or infinite beyond those tried."""
+    """The rate at which a quantile of the estimates equals the observed one; 0 or infinite beyond the rates tried."""
     rising = np.maximum.accumulate(estimates)
     if seen <= rising[0]:
         return 0.0

@@ -1,9 +1,9 @@
-"""How long do agents live, counting those who still live? Kaplan & Meier (1958).
+"""How long do agents live, counting those still alive? The Kaplan–Meier estimate (1958).
 
-An agent that lives when the records end has a lifetime of which only a lower bound is known: it is *censored*.
-Leaving it out, as a mean over the dead does, makes lives too short, since the long lives are those cut off.
-The estimator assumes that being cut off tells nothing about the rest of the life. Here that fails only where
-chances of death drift over the run, because those cut off were born last.
+If an agent is alive when the records end, only a lower bound of its lifetime is known: the lifetime is *censored*.
+Leaving such agents out, as a mean over the dead does, makes lifetimes too short, since it is long lives that are cut
+off. The estimator assumes that censoring is unrelated to the rest of the life. Here this fails only if the
+chance of death changes in the course of the run, because censored agents were born last.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from hedon.statistic.interval import LEVEL
 from hedon.statistic.law import normal_quantile
 
 AT_RISK = 20
-"""Agents that must have reached an age for the curve to be read there: beyond, it is made of a few lives."""
+"""Number of agents that must reach an age for the curve to be trusted there; beyond, it rests on a few lives."""
 
 Floats = NDArray[np.float64]
 
@@ -25,12 +25,12 @@ class SurvivalCurve:
     """The share of the newborn that reach an age.
 
     Attributes:
-        age: ages at which somebody died [step], ascending, shape (k,).
-        share: that live on after each age, shape (k,).
-        low, high: bounds of its pointwise interval, Greenwood's variance on the log-log scale; NaN where
-            nobody is left at risk; shape (k,).
-        at_risk: agents known to reach each age, shape (k,).
-        deaths: at each age, shape (k,).
+        age: Ages at which agents died [step], in ascending order, shape (k,).
+        share: Share that survives each age, shape (k,).
+        low, high: Bounds of its pointwise interval, from Greenwood's variance on the log-log scale; NaN if
+            no agent remains at risk; shape (k,).
+        at_risk: Number of agents known to reach each age, shape (k,).
+        deaths: Number of deaths at each age, shape (k,).
     """
 
     age: Floats
@@ -41,14 +41,14 @@ class SurvivalCurve:
     deaths: NDArray[np.int64]
 
     def trusted_age(self, at_risk: int = AT_RISK) -> float:
-        """The largest age at death that at least `at_risk` agents reached [step]; 0 where there is none."""
+        """The largest age at death that at least `at_risk` agents reached [step]; 0 if there is none."""
         reached = self.age[self.at_risk >= at_risk]
         return float(reached[-1]) if len(reached) else 0.0
 
     def quantile(self, share: float = 0.5) -> tuple[float | None, float | None, float | None]:
-        """The age that a share of the newborn does not reach, with its interval [step]; None beyond the record.
+        """The age by which a share of the newborn has died, with its interval [step]; None beyond the record.
 
-        The interval holds the ages at which the curve's own interval holds 1 − share (Brookmeyer & Crowley
+        The interval contains the ages at which the curve's own interval contains 1 − share (Brookmeyer & Crowley
         1982).
         """
         level = 1.0 - share
@@ -68,9 +68,9 @@ class RestrictedMean:
     """The mean of min(lifetime, until).
 
     Attributes:
-        mean: [step].
-        error: its standard error [step], agents taken as independent.
-        until: [step].
+        mean: The mean [step].
+        error: Its standard error [step], assuming independent agents.
+        until: The age limit [step].
     """
 
     mean: float
@@ -79,13 +79,13 @@ class RestrictedMean:
 
 
 def survival_curve(duration: Floats, died: NDArray[np.bool_], level: float = LEVEL) -> SurvivalCurve:
-    """The product-limit estimate, as `scipy.stats.ecdf` gives it, which takes half a second to load.
+    """The product-limit estimate, equal to that of `scipy.stats.ecdf`, which takes half a second to load.
 
     Args:
-        duration: lifetime, or age when last seen [step], shape (n,).
-        died: whether it is a lifetime, shape (n,). An agent last seen at an age at which others die
+        duration: Lifetime of each agent, or its age when last seen [step], shape (n,).
+        died: Whether the duration is a lifetime, shape (n,). An agent last seen at an age at which others die
             counts as at risk there.
-        level: of the pointwise interval.
+        level: Confidence level of the pointwise interval.
     """
     age, deaths = np.unique(duration[died], return_counts=True)
     if len(age) == 0:
@@ -94,7 +94,7 @@ def survival_curve(duration: Floats, died: NDArray[np.bool_], level: float = LEV
     at_risk = len(duration) - np.searchsorted(np.sort(duration), age, side="left")
     left = at_risk - deaths
     share = np.cumprod(left / at_risk, dtype=np.float64)
-    with np.errstate(divide="ignore", invalid="ignore"):  # NaN where nobody is left, as documented above
+    with np.errstate(divide="ignore", invalid="ignore"):  # NaN if no agent remains, as documented
         error = np.sqrt(np.cumsum(deaths / (at_risk * left))) / np.abs(np.log(share))
         wide = normal_quantile((1 + level) / 2) * error
         low, high = (np.asarray(share ** np.exp(sign * wide), np.float64) for sign in (1, -1))
@@ -107,8 +107,8 @@ def restricted_mean(curve: SurvivalCurve, until: float) -> RestrictedMean:
     Its variance is the sum over ages at death of (area right of the age)² · d/(n·(n − d)).
 
     Args:
-        curve: share alive by age.
-        until: the age where the area ends [step].
+        curve: Share alive by age.
+        until: Age at which the area ends [step].
     """
     within = curve.age < until
     age, share = curve.age[within], curve.share[within]
@@ -122,14 +122,14 @@ def restricted_mean(curve: SurvivalCurve, until: float) -> RestrictedMean:
 
 
 def exposure_mean(duration: Floats, died: NDArray[np.bool_]) -> float | None:
-    """Steps lived by all over deaths [step]: the mean lifetime if the chance of death did not depend on age.
+    """Steps lived by all agents per death [step]: the mean lifetime if the chance of death did not depend on age.
 
     Args:
-        duration: how long each was seen [step], (n,).
-        died: whether its life ended then, (n,).
+        duration: How long each agent was seen [step], shape (n,).
+        died: Whether its life ended then, shape (n,).
 
     Returns:
-        None where nobody died.
+        The mean; None if no agent died.
     """
     deaths = int(died.sum())
     return float(duration.sum()) / deaths if deaths else None
