@@ -1,4 +1,4 @@
-"""Studies: what is claimed, the worlds that this needs, and what they say."""
+"""Studies: claims, the worlds needed to test them, and the results."""
 
 from lazy_loader import attach_stub
 

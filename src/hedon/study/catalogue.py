@@ -1,6 +1,6 @@
-"""The studies that are installed, and those that the words of a command line name.
+"""Finds installed studies, and selects those named on a command line.
 
-Each installed package may bring some, by entry points of the group `hedon.studies`: hedon does so too.
+Any installed package may provide studies with entry points of the group `hedon.studies`, as hedon itself does.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,25 +14,25 @@ from hedon.error import HedonError
 from hedon.study.study import Study
 
 GROUP = "hedon.studies"
-"""Of the entry points; each loads a `Study` of its own name."""
+"""Group of the entry points, each of which loads the `Study` of the same name."""
 ALL = "all"
 """Stands for every study."""
 
 
 class StudyError(HedonError):
-    """There is no study or item of a name, or it cannot be loaded."""
+    """No study or item has this name, or it cannot be loaded."""
 
 
 @cache
 def installed() -> tuple[Mapping[str, Study], Mapping[str, str]]:
-    """The studies of all installed packages, by name, and why others cannot be loaded, by name too."""
+    """The studies of all installed packages, by name, and the errors of those that cannot be loaded, by name."""
     studies, faults = dict[str, Study](), dict[str, str]()
     for point in sorted(entry_points(group=GROUP), key=_order):
         package = point.dist.name if point.dist else "an unknown package"
         where = f"the study {point.name!r} of {package} ({point.value})"
         try:
             found = point.load()
-        except Exception as error:  # of whatever another package does as it is imported
+        except Exception as error:  # other packages may raise anything on import
             faults[point.name] = f"{where} cannot be loaded: {type(error).__name__}: {error}"
             continue
         if not isinstance(found, Study) or found.name != point.name:
@@ -45,17 +45,17 @@ def installed() -> tuple[Mapping[str, Study], Mapping[str, str]]:
 
 
 def _order(point: EntryPoint) -> tuple[bool, str]:
-    """hedon's own come first."""
+    """A sort key that puts hedon's own studies first."""
     return (point.dist is None or point.dist.name != "hedon", point.name)
 
 
 def choose(names: Sequence[str]) -> tuple[Study, ...]:
-    """The studies with some names, each with the items that are named: a name is of a study, an item, or `ALL`.
+    """The studies with some names, each reduced to its named items. A name refers to a study, an item, or `ALL`.
 
-    An item whose name several studies have is told as STUDY/ITEM.
+    If several studies have an item of the same name, it must be given as STUDY/ITEM.
 
     Raises:
-        StudyError: no study or item has one of the names, or several have it.
+        StudyError: No study or item has one of the names, or several have it.
     """
     studies, faults = installed()
     wanted: dict[str, set[str]] = {}
@@ -96,6 +96,6 @@ def _find(name: str, studies: Mapping[str, Study], faults: Mapping[str, str]) ->
 
 
 def reported_figures(preset: str | None) -> dict[str, Mapping[str, Any]]:
-    """What the sources of the installed studies report of a preset, by study; see `Study.reported`."""
+    """The results that the sources of installed studies report for a preset, by study; see `Study.reported`."""
     known = {name: study.reported.get(preset or "") for name, study in installed()[0].items()}
     return {name: figures for name, figures in known.items() if figures is not None}

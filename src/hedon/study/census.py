@@ -1,4 +1,4 @@
-"""Which worlds is an item made from? What must a reader know of them? Worlds of several conditions are joined here."""
+"""Lists, describes and joins the worlds from which an item is made."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -8,48 +8,48 @@ from hedon.analysis.world.record import WorldRecord
 from hedon.study.item import Condition, ItemInputs
 from hedon.text import count
 
-_NAMED = 3  # at most this many seeds that died out are named
+_NAMED = 3  # largest number of extinct seeds that are listed
 
 
 def present(conditions: Iterable[Condition], inputs: ItemInputs) -> dict[str, Sequence[WorldRecord]]:
     """The worlds of each condition that has any, by label and in the order of the conditions.
 
     Args:
-        conditions: of an item.
-        inputs: with the worlds that there are.
+        conditions: Conditions of an item.
+        inputs: Data with the available worlds.
     """
     found = {condition.label: inputs.worlds.get(condition.label, ()) for condition in conditions}
     return {label: worlds for label, worlds in found.items() if worlds}
 
 
 def missing(conditions: Iterable[Condition], inputs: ItemInputs) -> str:
-    """A sentence that names the conditions without worlds; empty where there is none.
+    """A sentence that names the conditions without worlds; empty if all have worlds.
 
     Args:
-        conditions: of an item.
-        inputs: with the worlds that there are.
+        conditions: Conditions of an item.
+        inputs: Data with the available worlds.
     """
     absent = [condition.label for condition in conditions if not inputs.worlds.get(condition.label)]
     return f"Not run yet: {'; '.join(absent)}." if absent else ""
 
 
 def sentences(*parts: str) -> str:
-    """Puts sentences together, without those that are empty."""
+    """Joins sentences, skipping empty ones."""
     return " ".join(filter(None, parts))
 
 
 def count_extinct(worlds: Iterable[WorldRecord]) -> int:
-    """How many of the worlds died out."""
+    """The number of worlds that died out."""
     return sum(world.extinct_step is not None for world in worlds)
 
 
 def steps_reached(worlds: Iterable[WorldRecord]) -> int:
-    """How far the longest of the records reaches [step]."""
+    """The last step of the longest record [step]."""
     return max((world.last_step for world in worlds), default=0)
 
 
 def describe(worlds: Sequence[WorldRecord]) -> tuple[str, str]:
-    """What a title says of one condition's worlds: how many and how long, and which of them died out."""
+    """The description of one condition's worlds in a title: number and length, and which of them died out."""
     living = [world.last_step for world in worlds if world.extinct_step is None]
     told = count(len(worlds), "world")
     if not living:
@@ -60,7 +60,7 @@ def describe(worlds: Sequence[WorldRecord]) -> tuple[str, str]:
 
 
 def world_indices(groups: Iterable[Sequence[WorldRecord]]) -> dict[int, int]:
-    """An index per seed, from 0 on: the same seed has the same color in each condition."""
+    """An index for each seed, from 0, so that a seed has the same color in each condition."""
     seeds = sorted({world.seed for worlds in groups for world in worlds})
     return {seed: index for index, seed in enumerate(seeds)}
 
@@ -69,9 +69,9 @@ def stack(worlds: Iterable[WorldRecord], table: str, indices: Mapping[int, int])
     """The rows of one table ("agents" or "population") of all worlds, with `world` as its seed's index.
 
     Args:
-        worlds: one or more, with equal columns.
-        table: its name.
-        indices: by seed, from `world_indices`.
+        worlds: One or more worlds, with equal columns.
+        table: Name of the table.
+        indices: Index of each seed, from `world_indices`.
     """
     return pl.concat(
         getattr(world, table).with_columns(world=pl.lit(indices[world.seed], pl.Int32)) for world in worlds

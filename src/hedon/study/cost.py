@@ -1,4 +1,4 @@
-"""How long the items of a request take on this machine, and how much of that is still to run."""
+"""Estimates how long the items of a request take on this machine, in total and for missing runs."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,11 +12,11 @@ from hedon.study.speed import Speed, measure_speed
 
 @dataclass(frozen=True)
 class Cost:
-    """How long some items take.
+    """The time that some items take.
 
     Attributes:
-        total: of all runs that they need [s].
-        left: of those that are still missing [s].
+        total: Time for all runs that they need [s].
+        left: Time for the runs that are still missing [s].
     """
 
     total: float
@@ -25,12 +25,12 @@ class Cost:
 
 @dataclass(frozen=True)
 class RequestCost:
-    """How long a request takes.
+    """The time that a request takes.
 
     Attributes:
-        items: of each item by itself, in their order.
-        together: of all of them, where shared worlds are counted once.
-        speeds: that were measured, by number of food kinds.
+        items: Cost of each item by itself, in order.
+        together: Cost of all items, with shared worlds counted once.
+        speeds: Measured speeds, by number of food kinds.
     """
 
     items: tuple[Cost, ...]
@@ -39,14 +39,20 @@ class RequestCost:
 
 
 def request_cost(request: Request, folder: Path, threads: int) -> RequestCost:
-    """Measures how fast this machine is, which takes seconds, and how long the runs of a request take."""
+    """Measures the speed of this machine, which takes seconds, and estimates the time for the runs of a request.
+
+    Args:
+        request: The items with their scale.
+        folder: Folder of existing runs.
+        threads: Number of threads that the runs will use; 0 for all.
+    """
     threads = threads or usable_cpus()
     speeds: dict[int, Speed] = {}
 
     def seconds(ensemble: Ensemble) -> float:
         total = 0.0
         for job in run_jobs(ensemble):
-            kinds = len(job.plan.config.food)  # networks grow with the kinds of food
+            kinds = len(job.plan.config.food)  # the size of networks depends on the number of food kinds
             if kinds not in speeds:
                 speeds[kinds] = measure_speed(job.plan.config, threads)
             total += job.world_steps / speeds[kinds].rate

@@ -1,4 +1,4 @@
-"""From the figures of some worlds to the figure of a claim, with its interval."""
+"""Combines the figures of worlds into the estimate for a claim, with its interval."""
 
 import math
 from collections.abc import Sequence
@@ -25,13 +25,13 @@ _LEVEL = 0.05
 
 @dataclass(frozen=True)
 class ClaimEstimate:
-    """The figure of a claim.
+    """The estimate for a claim.
 
     Attributes:
-        value: NaN where there is none, as its bounds.
-        low, high: bounds of its 95 % interval.
-        verdict: where a test decides in the place of the interval, its answer; else empty.
-        reason: what a reader must know.
+        value: The estimate; NaN if there is none.
+        low, high: Bounds of its 95 % interval; NaN if there is none.
+        verdict: Verdict of a test that decides in place of the interval; otherwise empty.
+        reason: Remark for the reader.
     """
 
     value: float = NAN
@@ -42,12 +42,12 @@ class ClaimEstimate:
 
 
 def estimate(claim: Claim, figures: Floats, worlds: Sequence[WorldRecord]) -> ClaimEstimate:
-    """Sums up the figures of some worlds as a claim wants it.
+    """Combines the figures of some worlds as a claim specifies.
 
     Args:
-        claim: the claim.
-        figures: one per world that has one, shape (n,).
-        worlds: that they are of, for the neutral genes.
+        claim: The claim.
+        figures: Figure of each world that has one, shape (n,).
+        worlds: The worlds of the figures, for their neutral genes.
     """
     if len(figures) == 0:
         return ClaimEstimate()
@@ -69,7 +69,7 @@ def estimate(claim: Claim, figures: Floats, worlds: Sequence[WorldRecord]) -> Cl
 
 
 def _modes(figures: Floats) -> ClaimEstimate:
-    """Two modes hold; that none were found does not say that there is one, so the claim never fails."""
+    """With two modes the claim holds. It never fails, since finding no second mode does not show that there is one."""
     found = modes(figures)
     power = f"power {found.power:.2f}"
     if found.answer == "two":
@@ -79,10 +79,10 @@ def _modes(figures: Floats) -> ClaimEstimate:
 
 
 def _walk(scores: Floats) -> ClaimEstimate:
-    """Whether scores differ from those of neutral genes: by a common direction, or by being too far out or too near.
+    """Whether scores differ from those of neutral genes, in a common direction or in their distance from the middle.
 
-    Both tests are corrected for each other. That nothing was found does not say that the weight drifts, so the claim
-    never fails.
+    The two tests are corrected for each other. The claim never fails, since a negative result does not show that the
+    weight drifts.
     """
     direction, distance, held = score_tests(scores)
     p_direction, p_distance = holm([direction.p, min(1.0, 2.0 * min(held.p, distance.p))])
@@ -96,7 +96,7 @@ def _walk(scores: Floats) -> ClaimEstimate:
 
 
 def _against_neutral(claim: Claim, scores: Floats, worlds: Sequence[WorldRecord]) -> ClaimEstimate:
-    """Spread or distance of scores, 1 for a neutral gene; undecided where recorded neutral genes have another one."""
+    """Spread or distance of scores, 1 for a neutral gene; undecided if recorded neutral genes have another value."""
     if claim.over_worlds == "spread":
         if len(scores) < 2:
             return ClaimEstimate()
@@ -121,12 +121,12 @@ def compare(
 
     Args:
         comparison: "difference" of means, "ratio" of geometric means, or "spread", a ratio of standard deviations.
-        values: First group, shape (n,).
-        others: Second group, shape (m,).
-        level: Of confidence.
+        values: The first group, shape (n,).
+        others: The second group, shape (m,).
+        level: Confidence level.
 
     Returns:
-        The comparison, lower and upper bound.
+        The estimate, lower and upper bound.
     """
     if comparison == "spread":
         return spread_ratio_interval(values, others, level)

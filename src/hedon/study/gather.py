@@ -1,4 +1,4 @@
-"""From run folders to what items are made from: the wanted worlds, as far as they are there."""
+"""Reads from run folders the data of which items are made: the needed worlds, as far as they exist."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -19,15 +19,15 @@ from hedon.study.request import Request, needs
 
 @dataclass(frozen=True)
 class Gathered:
-    """All that the items of a request are made from.
+    """The data for all items of a request.
 
     Attributes:
-        request: what was asked.
-        runs: that hold some of the worlds.
-        worlds: per setting's digest, seed and species, as far as their records reach.
-        frames: per setting's digest and seed the positions that were recorded.
-        snapshots: per setting's digest the last state of one world, where there is one.
-        faults: what could not be read, and why.
+        request: The request.
+        runs: Runs that contain some of the worlds.
+        worlds: Worlds by digest of the config, seed and species, as far as their records reach.
+        frames: Recorded positions by digest of the config and seed.
+        snapshots: Last state of one world by digest of the config, if available.
+        faults: Files that could not be read, with the reason.
     """
 
     request: Request
@@ -38,7 +38,7 @@ class Gathered:
     faults: tuple[str, ...]
 
     def inputs(self, item: Item) -> ItemInputs:
-        """What one item is made from."""
+        """The data for one item."""
         scale, fidelity = self.request.scale(item), self.request.fidelity
         configs = {condition.label: condition.config(fidelity) for condition in item.conditions}
         digests = {label: digest(config) for label, config in configs.items()}
@@ -64,7 +64,7 @@ class Gathered:
         return ItemInputs(fidelity, {label: group for label, group in worlds.items() if group}, snapshots, frames)
 
     def demanded(self) -> list[WorldRecord]:
-        """Every world once, as long as the most demanding item needs, with the label of its condition."""
+        """Every world once, cut at the steps of the most demanding item, with the label of its condition."""
         labels = self._labels()
         return [
             replace(self.worlds[need.digest, seed, species].until(steps), condition=labels[need.digest, species])
@@ -75,7 +75,7 @@ class Gathered:
         ]
 
     def _labels(self) -> dict[tuple[str, str], str]:
-        """The label of each setting and species, from the first item that shows it, unlike all others."""
+        """A unique label for each condition and species, from the first item that shows it."""
         found: dict[tuple[str, str], str] = {}
         pairs = [(item, condition) for item in self.request.items for condition in item.conditions]
         for is_shown in (True, False):
@@ -90,11 +90,11 @@ class Gathered:
 
 
 def gather(request: Request, folder: Path) -> Gathered:
-    """Reads what there is of the worlds that a request needs; what is damaged is left out and named.
+    """Reads the available worlds that a request needs; damaged data are left out and listed as faults.
 
     Args:
-        request: the items, with their scale.
-        folder: that holds the runs.
+        request: The items with their scale.
+        folder: Folder of the runs.
     """
     ensemble = find_ensemble(needs(request), folder)
     faults = list(ensemble.faults)
@@ -105,7 +105,7 @@ def gather(request: Request, folder: Path) -> Gathered:
 
 
 def _frames(ensemble: Ensemble, runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
-    """The positions of each world that an item needs, from the run that goes furthest."""
+    """The positions that an item needs of each world, from the longest run."""
     demands = {demand.digest: demand for demand in ensemble.demands}
     found: dict[tuple[str, int], pl.LazyFrame] = {}
     for run in sorted(runs, key=lambda run: max([*run.manifest.steps_done, 0])):
@@ -117,7 +117,7 @@ def _frames(ensemble: Ensemble, runs: Iterable[Run]) -> dict[tuple[str, int], pl
 
 
 def _snapshots(request: Request, runs: Iterable[Run], faults: list[str]) -> dict[str, Snapshot]:
-    """For each setting with a picture, the first state in which somebody lives, otherwise any."""
+    """For each condition with a picture, the first state with living agents, otherwise any state."""
     wanted = {
         digest(condition.config(request.fidelity))
         for item in request.items

@@ -1,4 +1,4 @@
-"""What an item of a study is: figures and tables for one question, the worlds that they need, how they are made."""
+"""Defines an item of a study: figures and tables for one question, the worlds that they need, and how to make them."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,16 +18,16 @@ from hedon.record.snapshot import Snapshot
 
 @dataclass(frozen=True)
 class Condition:
-    """A setting that an item shows or compares.
+    """A condition that an item shows or compares.
 
     Attributes:
-        label: what the item calls it; no other condition of the item has it.
-        preset: that it starts from, or the path of a config's file.
-        overrides: what it changes, as for `--set`.
-        fidelity: its own; None for the one that is asked for.
-        species: whose records are meant, where the setting has several; by default the first.
-        founders: genomes to begin with, as for `hedon run --founders`: "food=5:0.1,food=0:0.9"; by default those of the
-            setting's laws.
+        label: Its name in the item, unique among the item's conditions.
+        preset: Preset on which it is based, or the path of a config file.
+        overrides: Settings that it changes, as for `--set`.
+        fidelity: Its own fidelity; None for the requested one.
+        species: Species whose records are used, if there are several; the first by default.
+        founders: Genomes of founders, as for `hedon run --founders`: "food=5:0.1,food=0:0.9". By default they are drawn
+            from the config's distributions.
     """
 
     label: str
@@ -38,16 +38,16 @@ class Condition:
     founders: str = ""
 
     def config(self, fidelity: str) -> Config:
-        """The settings, where some fidelity is asked for."""
+        """The settings, given the requested fidelity."""
         config, table = _begin(self, self.fidelity or fidelity)
         return config if table is None else config.with_("world.founders", table.digest)
 
     def table(self, fidelity: str) -> Founders | None:
-        """The genomes to begin with, where some fidelity is asked for; None where they are drawn from the laws."""
+        """The table of founders, given the requested fidelity; None if they are drawn from distributions."""
         return _begin(self, self.fidelity or fidelity)[1]
 
     def is_of(self, world: WorldRecord) -> bool:
-        """Whether a world has these settings and nothing else is changed, and is of the species that is meant."""
+        """Whether a world has exactly these settings, and its records are of this species."""
         own = choose_species(self.species or None, self.config(world.config.fidelity))
         return world.species == own and world.settings == _digest(self, world.config.fidelity)
 
@@ -65,11 +65,11 @@ def _digest(condition: Condition, fidelity: str) -> str:
 
 @dataclass(frozen=True)
 class Scale:
-    """How much is run of each condition.
+    """The number and length of the worlds of each condition.
 
     Attributes:
-        seeds: one world each.
-        steps: of each world [step].
+        seeds: Seeds of the worlds.
+        steps: Length of each world [step].
     """
 
     seeds: tuple[int, ...]
@@ -78,14 +78,14 @@ class Scale:
 
 @dataclass(frozen=True)
 class ItemInputs:
-    """What an item is made from.
+    """The data from which an item is made.
 
     Attributes:
-        fidelity: that the request has.
-        worlds: per label of a condition the worlds that there are, up to the steps asked for; none where
-            there are none.
-        snapshots: per label the last state of a world of that condition, where there is one.
-        frames: per label the positions of all species in each world, a table `frames` of one world each, as far as they
+        fidelity: The requested fidelity.
+        worlds: Available worlds by label of their condition, cut at the requested steps; conditions without
+            worlds are missing.
+        snapshots: The last state of a world of each condition, by label, if available.
+        frames: Positions of all species by label of the condition, one table `frames` per world, as far as they
             were recorded.
     """
 
@@ -100,14 +100,14 @@ class Item:
     """Figures and tables that answer one question of a study.
 
     Attributes:
-        name: what the command line calls it.
-        title: its heading.
-        says: what the study's source shows or says there, or what is asked.
-        make: makes its figures and tables, in the order in which they are shown.
-        conditions: the settings that it needs worlds of; none where settings alone are enough.
-        scale: how much is run of each condition unless the request has another scale.
-        pictures: whether it only shows the last state of a world of each condition, for which any run is long enough.
-        frames: steps between two records of all positions that it needs; 0 if it needs none.
+        name: Its name on the command line.
+        title: Its heading.
+        says: What the study's source shows or states at this point, or the question.
+        make: Makes its figures and tables, in the order in which they are shown.
+        conditions: Conditions of the worlds that it needs; none if it needs only settings.
+        scale: Number and length of worlds per condition, unless the request sets another scale.
+        pictures: Whether it only shows the last state of a world of each condition, for which any run is long enough.
+        frames: Steps between two records of all positions; 0 if it needs no positions.
     """
 
     name: str

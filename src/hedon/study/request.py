@@ -1,4 +1,4 @@
-"""What a reproduction should make: which items, at which scale, and hence which worlds."""
+"""A request: the items of studies to make, their scale, and the worlds that they need."""
 
 import math
 from dataclasses import dataclass
@@ -10,13 +10,13 @@ from hedon.study.item import Item, Scale
 
 @dataclass(frozen=True)
 class Request:
-    """The items that are wanted, and how much is to be run for them.
+    """The requested items, and the number and length of their worlds.
 
     Attributes:
-        items: in the order in which they are shown.
-        fidelity: of the conditions that have none of their own.
-        seeds: one world each, in the place of the items' own; None for those.
-        steps: of each world, in the place of the items' own [step]; None for those.
+        items: The items, in the order in which they are shown.
+        fidelity: Fidelity of the conditions that do not set their own.
+        seeds: Seeds that replace the items' own seeds; None to keep them.
+        steps: Length of each world that replaces the items' own length [step]; None to keep it.
     """
 
     items: tuple[Item, ...]
@@ -25,21 +25,21 @@ class Request:
     steps: int | None = None
 
     def scale(self, item: Item) -> Scale:
-        """How much is run of each condition of an item. A picture needs no more than its own scale."""
+        """The number and length of worlds for each condition of an item. A picture needs no more than its own scale."""
         if item.pictures:
             return item.scale
         return Scale(self.seeds or item.scale.seeds, self.steps or item.scale.steps)
 
 
 def needs(request: Request) -> list[Demand]:
-    """The worlds that a request needs, by setting; of each seed as many steps as the most demanding item asks for."""
+    """The worlds that a request needs, by condition; each seed gets the steps of the most demanding item."""
     found: dict[str, Demand] = {}
     for item, condition in ((each, condition) for each in request.items for condition in each.conditions):
         config = condition.config(request.fidelity)
         key = digest(config)
         need = found.setdefault(key, Demand(config, key, founders=condition.table(request.fidelity)))
         scale = request.scale(item)
-        need.frames = math.gcd(need.frames, item.frames)  # 0 where neither needs them
+        need.frames = math.gcd(need.frames, item.frames)  # 0 if neither needs them
         for seed in scale.seeds:
             need.steps[seed] = max(need.steps.get(seed, 0), scale.steps)
     return list(found.values())

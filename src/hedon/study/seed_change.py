@@ -1,4 +1,4 @@
-"""Differences between conditions, seed by seed, and the measures of each world that they are made of."""
+"""Differences between conditions, seed by seed, and the measures of each world on which they are based."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -17,13 +17,13 @@ def world_rows(
     """One row per world, in the order of the conditions.
 
     Args:
-        inputs: with the worlds that there are.
-        conditions: of the study.
-        measures: what is measured of each world.
+        inputs: Data with the available worlds.
+        conditions: Conditions of the study.
+        measures: Measures to compute for each world.
 
     Returns:
         Columns condition (its label), seed, steps, died_out, one per measure, and until, the age up to which
-        lifetimes are averaged where the living are counted [step].
+        lifetimes are averaged if the living are counted [step].
     """
     there = [(each.label, world) for each in conditions for world in inputs.worlds.get(each.label, ())]
     until = common_age(world for _, world in there)
@@ -37,11 +37,11 @@ def world_rows(
 
 
 def shown_interval(values: Sequence[float | None], measure: Measure | None = None) -> Interval:
-    """Mean and interval over worlds, without bounds below five worlds.
+    """The mean and interval over worlds, without bounds for fewer than five worlds.
 
     Args:
-        values: one per world; None is left out.
-        measure: that they are of, so that the mean of what is compared as a ratio is geometric; None for the plain
+        values: Value of each world; None is ignored.
+        measure: Measure of the values, whose mean is geometric if it is compared as a ratio; None for the arithmetic
             mean.
     """
     known = [value for value in values if value is not None]
@@ -55,11 +55,11 @@ def shown_interval(values: Sequence[float | None], measure: Measure | None = Non
 
 
 def read_change(before: str, after: str) -> str:
-    """How the rows of `change` are to be read.
+    """A caption that explains the rows of `change`.
 
     Args:
-        before: label of the condition that the change is against.
-        after: label of the condition that is changed.
+        before: Label of the reference condition.
+        after: Label of the changed condition.
     """
     return (
         f"Means over worlds; change: {after} against {before}, seed by seed, as a difference or, for lifetimes and "
@@ -69,13 +69,13 @@ def read_change(before: str, after: str) -> str:
 
 
 def change(rows: Sequence[dict[str, Any]], measure: Measure, before: str, after: str) -> Iterator[dict[str, Any]]:
-    """One measure in two conditions, and its change seed by seed; nothing if neither condition has it.
+    """One measure in two conditions, and its change seed by seed; no rows if neither condition has it.
 
     Args:
-        rows: of `world_rows`.
-        measure: one of those that the rows hold.
-        before: label of the condition that the change is against.
-        after: label of the condition that is changed.
+        rows: Rows from `world_rows`.
+        measure: One of the measures in the rows.
+        before: Label of the reference condition.
+        after: Label of the changed condition.
     """
     by_condition = {
         label: {row["seed"]: row[measure.name] for row in rows if row["condition"] == label}
@@ -98,12 +98,12 @@ def change(rows: Sequence[dict[str, Any]], measure: Measure, before: str, after:
 
 
 def missing_note(inputs: ItemInputs, conditions: Sequence[Condition], scale: Scale) -> str:
-    """Names conditions without worlds, worlds that reach less far than the study's scale, and those that died out.
+    """A note on conditions without worlds, on worlds shorter than the study's scale, and on worlds that died out.
 
     Args:
-        inputs: with the worlds that there are.
-        conditions: of the study.
-        scale: how many worlds it wants, and how long.
+        inputs: Data with the available worlds.
+        conditions: Conditions of the study.
+        scale: Number and length of the worlds that the study needs.
     """
     parts = [missing(conditions, inputs)]
     worlds = [(condition.label, world) for condition in conditions for world in inputs.worlds.get(condition.label, ())]

@@ -1,4 +1,4 @@
-"""Estimates how long runs take on this machine, measured with worlds as they are in the middle of a run."""
+"""Estimates how long runs take on this machine, from a measurement with worlds as populated as in mid-run."""
 
 import time
 from dataclasses import dataclass
@@ -7,19 +7,19 @@ from hedon.config import Config
 from hedon.experiment.simulation import Simulation
 
 TYPICAL_ALIVE = 150
-"""Agents of a typical world; a new one has too few for an estimate."""
+"""Number of agents in a typical world; a new world has too few for an estimate."""
 MOST_WORLDS = 16
-"""Most worlds that are measured at the same time; further threads are assumed to be as fast as these."""
+"""Largest number of worlds measured at the same time; further threads are assumed to be equally fast."""
 
 
 @dataclass(frozen=True)
 class Speed:
-    """How fast a machine is.
+    """The speed of a machine.
 
     Attributes:
-        rate: steps of all worlds together [world-steps/s].
-        threads: number of threads that the rate is for, with one world on each.
-        agents: mean number alive in a world.
+        rate: Steps of all worlds together [world-steps/s].
+        threads: Number of threads for which the rate holds, with one world on each.
+        agents: Mean number of agents alive in a world.
     """
 
     rate: float
@@ -28,16 +28,20 @@ class Speed:
 
 
 def measure_speed(config: Config, threads: int) -> Speed:
-    """Times one window of worlds of a setting, each on its own thread; takes seconds.
+    """Measures the time for one window of worlds of a condition, each on its own thread; this takes seconds.
 
-    All agents are there from the first step and learn at the end; no agent is born in between.
+    All agents exist from the first step and learn at the end; none are born in between.
+
+    Args:
+        config: Settings of the worlds.
+        threads: Number of threads for which the rate is wanted.
     """
     worlds = min(threads, MOST_WORLDS)
     count = min(TYPICAL_ALIVE, *(own.population.capacity for own in config.species.values()))
     peopled = config.with_("population.initial_count", count).with_("birth.kappa", 0.0)
     simulation = Simulation(peopled, range(1, worlds + 1), worlds)
     window = config.world.rollout_steps
-    simulation.run(1)  # touches all memory for the first time
+    simulation.run(1)  # so that all memory has been touched before the measurement
     begun = time.perf_counter()
     simulation.run(window)
     seconds = time.perf_counter() - begun

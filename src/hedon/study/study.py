@@ -1,6 +1,6 @@
-"""What a study is: a question, the worlds that answer it, and what is made of them.
+"""Defines a study: a question, the worlds that answer it, and the figures and tables made from them.
 
-A package brings studies of its own by an entry point of the group `hedon.studies`, under the study's name.
+A package can add studies with entry points of the group `hedon.studies`, each with the name of the study.
 """
 
 from collections.abc import Mapping
@@ -13,18 +13,18 @@ from hedon.study.item import Item
 
 @dataclass(frozen=True)
 class Study:
-    """A question, the worlds that answer it, and what is made of them.
+    """A question, the worlds that answer it, and the figures and tables made from them.
 
     Attributes:
-        name: what the command line calls it, and its entry point.
-        title: its heading.
-        question: what is claimed or asked, with its source.
-        items: its figures and tables, each with the conditions and seeds that it needs.
-        expectation: what is expected, written before its worlds are run.
-        claims: with the rules by which they are judged, wherever a run has their conditions.
-        reported: what the source reports of a preset, by the preset: under keys of `summary.json`, numbers or pairs of
-            bounds; under `steps`, those of its worlds; under `claim`, a sentence; under `ends`, genomes such as
-            "food=5,action=5" where its worlds end.
+        name: Its name on the command line, and the name of its entry point.
+        title: Its heading.
+        question: The claim or question, with its source.
+        items: Its figures and tables, each with the conditions and seeds that it needs.
+        expectation: The expected result, written before its worlds are run.
+        claims: Claims with the rules by which they are judged, in every run that has their conditions.
+        reported: Results that the source reports, by preset. Keys are those of `summary.json`, with numbers or pairs of
+            bounds; `steps`, the length of its worlds; `claim`, a sentence; and `ends`, genomes such as
+            "food=5,action=5" at which its worlds end.
     """
 
     name: str

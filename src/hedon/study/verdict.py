@@ -1,8 +1,8 @@
-"""Do a study's claims hold in these runs? Here their rules are applied.
+"""Do a study's claims hold in these runs? Applies the rules of the claims.
 
-There are two separate questions. *Does the claim hold here?* Our figure's interval against the region of the claim.
-*Do we differ from its source?* A test of two samples, where the source gives a count of its worlds; without a spread of
-its means the question has no answer for them.
+There are two separate questions. *Does the claim hold here?* is answered by comparing the interval of our figure with
+the region of the claim. *Do we differ from its source?* is answered by a two-sample test, if the source reports a count
+of worlds. For means it cannot be answered, since sources do not report their spread.
 """
 
 import math
@@ -25,30 +25,29 @@ DIFFERS, NOT_SHOWN = "differs", "no difference shown"
 NO_SPREAD, NO_COUNT = "the source gives no spread", "the source gives no count"
 TOO_FEW, CROSSES = f"fewer than {FOR_FULL_LENGTH} worlds", "the interval crosses the border"
 LEVEL = 0.05
-"""Level of the second question: the chance of finding a difference where there is none."""
+"""Significance level of the second question."""
 _UNTESTABLE = {"mean": NO_SPREAD, "ratio": NO_SPREAD, "setting": ""}
-"""Why the second question cannot be asked, by the way worlds are summed up; a setting is the same in every world."""
+"""Why the second question cannot be answered, by the way worlds are combined; a setting is the same in every world."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What some worlds of one condition, or of two, say of one claim.
+    """The verdict of some worlds of one or two conditions on one claim.
 
     Attributes:
-        claim: its name.
-        condition: whose worlds were tested; two of them with "against" between.
+        claim: Name of the claim.
+        condition: The condition whose worlds were tested, or two with "against" between them.
         verdict: "holds", "fails" or "undecided".
-        value: our figure; NaN where there is none, as its bounds.
-        low, high: bounds of its 95 % interval.
-        reported: what its source reports.
-        p_reported: chance of a share as far from the source's, or further, if both have the same; NaN where it cannot
-            be told.
-        against_reported: "differs", "no difference shown", or why it cannot be asked.
-        worlds: that the figure is made of.
-        reason: why it is undecided, or what else a reader must know.
-        text: the claim in words.
-        region_low, region_high: where it holds.
-        source: where it stands.
+        value: Our figure; NaN if there is none.
+        low, high: Bounds of its 95 % interval; NaN if there is none.
+        reported: What the source reports.
+        p_reported: p value of the difference between our share and the source's; NaN if it cannot be computed.
+        against_reported: "differs", "no difference shown", or why the question cannot be answered.
+        worlds: Number of worlds behind the figure.
+        reason: Why the claim is undecided, and further remarks.
+        text: The claim, in words.
+        region_low, region_high: The region in which the claim holds.
+        source: Where the source makes the claim.
     """
 
     claim: str
@@ -69,14 +68,14 @@ class Verdict:
 
 
 def verdicts(worlds: Iterable[WorldRecord], claims: Iterable[Claim | Order]) -> list[Verdict]:
-    """A verdict for each condition and each claim that is about it, then for each pair and each claim about two.
+    """A verdict for each condition and each claim about it, then for each pair of conditions and each claim about two.
 
-    A condition is what a claim is about if its settings are those of the claim's condition, with any fidelity,
-    and nothing else is changed. Two conditions are compared if their fidelity is the same.
+    A condition matches a claim if it has exactly the settings of the claim's condition, with any fidelity.
+    Two conditions are compared if their fidelity is the same.
 
     Args:
-        worlds: of any settings.
-        claims: about one condition, or two.
+        worlds: Worlds of any conditions.
+        claims: Claims about one condition or two.
     """
     groups, asked = by_condition(worlds), list(claims)
     found = [
@@ -98,7 +97,13 @@ def verdicts(worlds: Iterable[WorldRecord], claims: Iterable[Claim | Order]) -> 
 
 
 def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdict:
-    """Applies a claim's rule to worlds of one condition."""
+    """Applies a claim's rule to worlds of one condition.
+
+    Args:
+        claim: The claim.
+        condition: Name of the condition.
+        worlds: Worlds of the condition.
+    """
     if claim.over_worlds == "extinction":
         return _judge_extinction(claim, condition, worlds)
     used, shortfall, remarks = _asked(claim, worlds)
@@ -118,7 +123,13 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
 
 
 def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[WorldRecord]) -> Verdict:
-    """Applies the rule of a claim about two conditions to worlds of both."""
+    """Applies the rule of a claim about two conditions.
+
+    Args:
+        order: The claim.
+        first: Worlds of its first condition.
+        second: Worlds of its second condition.
+    """
     parts, remarks, shortfalls = [], [], []
     for worlds in (first, second):
         used, shortfall, said = _asked(order, worlds)
@@ -137,7 +148,13 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
 
 
 def place(low: float, high: float, region_low: float, region_high: float) -> str:
-    """Where an interval lies: within the region, outside of it, or across its border (or without bounds).
+    """The verdict for an interval that is within a region, outside of it, or across its border (or has no bounds).
+
+    Args:
+        low: Lower bound of the interval.
+        high: Upper bound of the interval.
+        region_low: Lower end of the region in which the claim holds.
+        region_high: Upper end of the region.
 
     Returns:
         `HOLDS`, `FAILS` or `UNDECIDED`.
@@ -150,7 +167,7 @@ def place(low: float, high: float, region_low: float, region_high: float) -> str
 
 
 def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdict:
-    """All worlds count, however long: those whose record ends before the step are censored there."""
+    """Uses all worlds, however long; those whose records end before the step are censored there."""
     found = world_extinction(worlds, claim.steps)
     name = place(found.low, found.high, claim.low, claim.high) if found.worlds else UNDECIDED
     unknown = found.worlds - found.extinct - found.followed
@@ -167,10 +184,10 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
 
 
 def _asked(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:
-    """The worlds to ask, why they may not decide, and who was left out.
+    """The worlds to use, why they may not decide the claim, and remarks on worlds that were left out.
 
-    Extinct worlds are left out, as papers replace them; where all species must last it is said how many worlds do.
-    Where some worlds are long enough, only these are asked.
+    Extinct worlds are left out, since papers replace them. If all species must survive, a remark gives the share of
+    worlds in which they do. If some worlds are long enough, only these are used.
     """
     steps, remarks, shortfall = claim.steps, list[str](), ""
     living = [world for world in worlds if world.extinct_step is None]
@@ -190,7 +207,7 @@ def _asked(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[Wo
 
 
 def _lasting(worlds: Sequence[WorldRecord], steps: int) -> str:
-    """Which share of all worlds, those left out too, keeps every species: what is said of the others is said of it."""
+    """The share of all worlds, including those left out, that keeps every species; the claim is about this share."""
     found = species_loss(worlds, steps)
     share, low, high = (f"{100 * (1 - part):.0f}" for part in (found.share, found.high, found.low))
     return (
@@ -205,7 +222,7 @@ def _figures(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> NDArray[np.
 
 
 def _against_reported(claim: Claim, count: int, of: int, unknown: int) -> tuple[float, str]:
-    """The second question, about a share; worlds of unknown fate are taken as what makes the difference least sure."""
+    """Answers the second question for a share; worlds of unknown fate get the outcome that gives the largest p."""
     if claim.reported_count is None:
         return math.nan, NO_COUNT
     if not of:

@@ -19,7 +19,12 @@ _NOTE = (
 
 
 def verdict(conditions: Conditions, claims: Iterable[Claim | Order] | None = None) -> list[ResultTable]:
-    """What some worlds say of claims that are about their conditions."""
+    """The verdicts on all claims about the conditions of some worlds.
+
+    Args:
+        conditions: Worlds by condition.
+        claims: Claims to judge; None for the claims in all installed studies.
+    """
     if claims is None:
         claims = (claim for study in installed()[0].values() for claim in study.claims)
     found = verdicts((world for worlds in conditions.values() for world in worlds), claims)
