@@ -1,9 +1,9 @@
 """Two groups of genomes in one world: which one grows, and how fast?
 
-With p the share of a group among the living, selection of strength s per generation changes it by s·p·(1 − p) per
-generation, and drift adds noise of mean 0. The estimate is the maximum-likelihood one of that diffusion (Watterson
-1979), s = Σ Δp / Σ ∫ p(1 − p) dg over worlds: a world in which one group is lost adds nothing from then on. The log of
-the ratio of the two groups changes by s per generation.
+Let p be the share of a group among the living. Selection of strength s per generation changes it by s·p·(1 − p) per
+generation, and drift adds noise with mean 0. We use the maximum-likelihood estimate for this diffusion (Watterson
+1979), s = Σ Δp / Σ ∫ p(1 − p) dg over worlds. A world in which one group is lost contributes nothing from then on. The
+log ratio of the two groups changes by s per generation.
 """
 
 from collections.abc import Mapping, Sequence
@@ -29,7 +29,7 @@ from hedon.assay.sample import Sample
 from hedon.record.founder import Founders
 
 TIMES = 101
-"""Moments at which the living are counted."""
+"""Number of moments at which the living are counted."""
 _SEED = 20260802
 Point = Mapping[str, float]
 """The genes of a group, by column."""
@@ -40,14 +40,15 @@ class Lines:
     """The numbers of two groups in one world over time.
 
     Attributes:
-        seed: of the world.
-        step: moments [step], up to the last at which somebody lived, (times,).
-        count: living of the first and the second group, (times, 2); an agent with genes of both counts in parts.
-        generation: mean generation of the living, (times,).
-        first: whether each founder belongs to the first group, (founders,).
-        descendants: living descendants of each founder at the last moment, (founders,); with two parents, each has half
-            of a child.
-        ended: whether the world died out.
+        seed: Seed of the world.
+        step: Moments up to the last one with living agents [step], shape (times,).
+        count: Living agents of the first and the second group, shape (times, 2); an agent with genes of both is divided
+            between them.
+        generation: Mean generation of the living, shape (times,).
+        first: Whether each founder belongs to the first group, shape (founders,).
+        descendants: Living descendants of each founder at the last moment, shape (founders,); each of two parents
+            counts half of a child.
+        ended: Whether the world died out.
     """
 
     seed: int
@@ -60,12 +61,12 @@ class Lines:
 
     @property
     def share(self) -> Floats:
-        """The share of the first group among the living, (times,)."""
+        """The share of the first group among the living, shape (times,)."""
         return self.count[:, 0] / self.count.sum(axis=1)
 
     @property
     def selection(self) -> float:
-        """The coefficient of this world by itself; NaN where the share never varied."""
+        """The selection coefficient estimated from this world only; NaN if the share never varied."""
         variation = float(self.variation.sum())
         return float(self.share[-1] - self.share[0]) / variation if variation > 0 else float("nan")
 
@@ -78,18 +79,18 @@ class Lines:
 
 @dataclass(frozen=True, eq=False)
 class Contest:
-    """How two groups fared.
+    """The result of a contest between two groups.
 
     Attributes:
-        groups: their names; numbers are of the first against the second.
-        lines: of each world.
-        selection: coefficient per generation, with its interval over worlds.
-        share: of the first group at the end, mean over worlds, with its interval.
-        start: its share at the beginning.
-        p: chance of so large a change of the share if both groups are alike: founders exchange their groups.
-        fixed, lost: worlds in which only the first group, or only the second, is left.
-        generations: mean over worlds, at the end.
-        steps: of each world [step].
+        groups: Names of the groups; all numbers refer to the first against the second.
+        lines: Numbers of both groups over time, in each world.
+        selection: Selection coefficient per generation, with its interval over worlds.
+        share: Mean share of the first group at the end over worlds, with its interval.
+        start: Share of the first group at the start.
+        p: p value of the change of the share, from a permutation test that exchanges the groups of founders.
+        fixed, lost: Number of worlds in which only the first group, or only the second, is left.
+        generations: Mean generation at the end, averaged over worlds.
+        steps: Length of each world [step].
     """
 
     groups: tuple[str, str]
@@ -104,7 +105,11 @@ class Contest:
     steps: int
 
     def course(self) -> tuple[np.ndarray, Floats, Floats]:
-        """Steps, the log ratio of the groups' numbers summed over worlds, and its interval, (times,) and (2, times)."""
+        """The steps, the log ratio of the groups' numbers summed over worlds, and its interval.
+
+        Returns:
+            Arrays of shape (times,), (times,) and (2, times).
+        """
         step = np.linspace(0, self.steps, TIMES).round().astype(np.int64)
         counts = np.zeros((len(self.lines), TIMES, 2))
         for i, lines in enumerate(self.lines):
@@ -121,10 +126,10 @@ def world_lines(agents: pl.DataFrame, seed: int, member: Floats, steps: int) -> 
     """Counts two groups in one world.
 
     Args:
-        agents: its rows of the table `agents`, by agent_id; of one species.
-        seed: of the world.
-        member: how far each agent belongs to the first group, from 0 to 1, (agents,).
-        steps: of the run [step].
+        agents: Rows of the table `agents` of one world and species, by agent_id.
+        seed: Seed of the world.
+        member: Membership of each agent in the first group, from 0 to 1, shape (agents,).
+        steps: Length of the run [step].
     """
     tree = genealogy(agents)
     generation = depth(tree)
@@ -154,23 +159,29 @@ def world_lines(agents: pl.DataFrame, seed: int, member: Floats, steps: int) -> 
 
 
 def by_descent(agents: pl.DataFrame, first: Sequence[bool], first_id: int = 0) -> Floats:
-    """How far each agent belongs to the group of its founder: 0 or 1, (agents,)."""
+    """The membership of each agent in the first group, by descent from its founder: 0 or 1, shape (agents,).
+
+    Args:
+        agents: Agents of one world, by agent_id.
+        first: Whether each founder belongs to the first group.
+        first_id: agent_id of the first founder.
+    """
     line = founder(genealogy(agents))
     return np.asarray(first, np.float64)[agents["agent_id"].to_numpy()[line] - first_id]
 
 
 def by_gene(agents: pl.DataFrame, a: Mapping[str, float], b: Mapping[str, float]) -> Floats:
-    """How far each agent has the genes of the first of two points, from 0 to 1, (agents,).
+    """The share of distinguishing genes that each agent has from the first of two points, shape (agents,).
 
-    Where a child has genes of two parents, groups are told apart by the genes in which they differ; nothing mutates.
+    If children have two parents, groups are distinguished by the genes in which they differ; there is no mutation.
 
     Args:
-        agents: of a world.
-        a: the genes of the first group, by column.
-        b: those of the second, with the same columns.
+        agents: Agents of one world.
+        a: Genes of the first group, by column.
+        b: Genes of the second group, with the same columns.
 
     Raises:
-        AssayError: The points do not differ, or not in the same genes.
+        AssayError: The points are equal, or have different genes.
     """
     genes = [gene for gene, value in a.items() if b.get(gene) != value]
     if not genes or a.keys() != b.keys():
@@ -180,10 +191,15 @@ def by_gene(agents: pl.DataFrame, a: Mapping[str, float], b: Mapping[str, float]
 
 
 def sample_lines(sample: Sample, groups: tuple[str, str], species: str) -> list[Lines]:
-    """The numbers of two groups in each world.
+    """The numbers of two groups in each world of a sample.
+
+    Args:
+        sample: The worlds.
+        groups: Names of the first and the second group.
+        species: Species that competes.
 
     Raises:
-        AssayError: There is no table of founders, or its groups cannot be told apart.
+        AssayError: There is no table of founders, or its groups cannot be distinguished.
     """
     founders = sample.demand.founders
     if founders is None:
@@ -192,12 +208,12 @@ def sample_lines(sample: Sample, groups: tuple[str, str], species: str) -> list[
 
 
 def estimate(groups: tuple[str, str], lines: Sequence[Lines], steps: int) -> Contest:
-    """Estimates what the numbers of two groups in some worlds tell; see `Contest`.
+    """Estimates selection from the numbers of two groups in some worlds.
 
     Args:
-        groups: names of the first and the second group.
-        lines: numbers over time, one entry per world.
-        steps: of each world [step].
+        groups: Names of the first and the second group.
+        lines: Numbers over time, one entry per world.
+        steps: Length of each world [step].
     """
     rng = np.random.default_rng(_SEED)
     worlds = len(lines)
@@ -220,6 +236,11 @@ def estimate(groups: tuple[str, str], lines: Sequence[Lines], steps: int) -> Con
 
 def points_of(founders: Founders, groups: tuple[str, str], species: str) -> tuple[Point, Point]:
     """The genes of two groups that have one row each.
+
+    Args:
+        founders: Table of founders.
+        groups: Names of the groups.
+        species: Species whose genes are wanted.
 
     Raises:
         AssayError: A group has several rows, or lacks a gene of the other.
@@ -249,7 +270,7 @@ def _lines(world: WorldRecord, founders: Founders, groups: tuple[str, str], step
 
 
 def _exchange(lines: Sequence[Lines], rng: np.random.Generator) -> float:
-    """The chance of so large a mean change of the share if it does not matter which founder is in which group."""
+    """The p value of the mean change of the share if the assignment of founders to groups does not matter."""
     observed, null = 0.0, np.zeros(PERMUTATIONS)
     for each in lines:
         weights = each.descendants / each.descendants.sum()

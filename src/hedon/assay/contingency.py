@@ -1,4 +1,4 @@
-"""Was the outcome settled, or left to chance? Futures of one world are compared with worlds that begin afresh."""
+"""Was the outcome determined or left to chance? Compares futures of one world with fresh worlds."""
 
 import math
 from collections.abc import Sequence
@@ -21,33 +21,33 @@ from hedon.statistic.law import t_above, t_quantile
 from hedon.statistic.minimum import FOR_INTERVAL
 
 FATES = ("alive_mean", "mean_energy", "generation")
-"""Measures of a world's end. Others sum over a world's whole history, which fresh worlds and futures do not share."""
+"""Measures of a world's end. Other measures cover its whole history, which fresh worlds and futures do not share."""
 LINEAGES, NEUTRAL = "lineages", "neutral genes"
 DRAWS = 2000
-"""Permutations per test."""
+"""Number of permutations per test."""
 UNKNOWN = (math.nan, math.nan, math.nan, math.nan)
-"""A ratio, its interval and its p, if they cannot be computed."""
+"""A ratio, its interval and its p value, if they cannot be computed."""
 Futures = tuple[Past, Sample]
-"""A world at a step, and the worlds that go on from it."""
+"""A world at a step, and the worlds that continue from it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Divergence:
-    """How far apart the futures of a world end, compared with fresh worlds, in one measure.
+    """How far apart the futures of a world end in one measure, compared with fresh worlds.
 
     Attributes:
-        step: at which the futures part [step].
-        generation: mean of the living at that step in fresh worlds.
-        measure: its name, with the species before it where there are several.
-        pasts: number of worlds that have futures.
-        futures, fresh: number of worlds of each kind that have a value.
-        apart: mean distance between two futures of one world, on the scale on which the measure is compared; over
-            several genes, their mean distance.
-        fresh_apart: mean distance between two fresh worlds.
-        ratio: `apart` / `fresh_apart`: near 0 if the outcome was settled by then, 1 if nothing was.
-        low, high: 95 % interval of the ratio; NaN with too few worlds.
-        p: two-sided chance of a ratio this far from 1 if the distances were equal.
-        p_holm: corrected for all measures and steps.
+        step: Step at which the futures diverge [step].
+        generation: Mean generation of the living at that step in fresh worlds.
+        measure: Name of the measure, preceded by the species if there are several.
+        pasts: Number of worlds that have futures.
+        futures, fresh: Number of futures, and of fresh worlds, with a value.
+        apart: Mean distance between two futures of one world, on the scale on which the measure is compared; averaged
+            over genes if there are several.
+        fresh_apart: Mean distance between two fresh worlds.
+        ratio: `apart` / `fresh_apart`: near 0 if the outcome was determined by then, 1 if nothing was.
+        low, high: Bounds of the 95 % interval of the ratio; NaN with too few worlds.
+        p: Two-sided p value of the ratio's deviation from 1.
+        p_holm: p after Holm correction for all measures and steps.
     """
 
     step: int
@@ -70,16 +70,16 @@ class Overlap:
     """Whether the same agents have descendants in all futures of a world.
 
     Attributes:
-        past: seed of the world.
-        step: at which its futures part [step].
-        species: whose agents.
-        agents: how many lived then.
-        everywhere: how many of them have living descendants in every future.
-        nowhere: how many have none in any.
-        overlap: the part of two futures' living that descends from the same agents in both, mean over pairs.
-        chance: the same if the agents of that time were interchangeable.
-        p: chance of such an overlap, or a larger one, if they were.
-        p_holm: corrected for all worlds, steps and species.
+        past: Seed of the world.
+        step: Step at which its futures diverge [step].
+        species: Species of the agents.
+        agents: Number of agents alive at that step.
+        everywhere: Number of these that have living descendants in every future.
+        nowhere: Number of these that have no living descendants in any future.
+        overlap: Share of the living that descends from the same agents in two futures, averaged over pairs of futures.
+        chance: Expected overlap if the agents of that time were interchangeable.
+        p: Chance of an overlap at least this large if they were.
+        p_holm: p after Holm correction for all worlds, steps and species.
     """
 
     past: int
@@ -95,7 +95,10 @@ class Overlap:
 
 
 def measures_of(world: WorldRecord) -> dict[str, list[Measure]]:
-    """What futures and fresh worlds can be compared by: each weight, all neutral genes together, and numbers."""
+    """The measures by which futures and fresh worlds are compared: each weight, all neutral genes together, and others.
+
+    The result contains the measures of each comparison, by its name.
+    """
     found = {f"{gene}_mean": [gene_mean(gene)] for gene in world.reward_names}
     if world.neutral_names:
         found[NEUTRAL] = [gene_mean(gene) for gene in world.neutral_names]
@@ -103,7 +106,7 @@ def measures_of(world: WorldRecord) -> dict[str, list[Measure]]:
 
 
 def lineages_since(step: int) -> Measure:
-    """The effective number of agents of a step from which the living at the end descend."""
+    """The effective number of agents at a step from which the living at the end descend."""
 
     def of(world: WorldRecord) -> float | None:
         share = descent_shares(world, step)["share"].to_numpy()
@@ -113,7 +116,11 @@ def lineages_since(step: int) -> Measure:
 
 
 def descent_shares(world: WorldRecord, step: int) -> pl.DataFrame:
-    """Which part of the living at the end descends from each agent that lived at a step.
+    """The share of the living at the end that descends from each agent alive at a step.
+
+    Args:
+        world: The world.
+        step: The step [step].
 
     Returns:
         Columns agent_id and share, by agent_id. The shares sum to 1, or are all 0 in an extinct world.
@@ -121,7 +128,7 @@ def descent_shares(world: WorldRecord, step: int) -> pl.DataFrame:
     lived = pl.col("death_step").is_null() | (pl.col("death_step") > step)
     old = pl.col("birth_step") <= step
     parents = [name for name in ("parent_id", "mate_id") if name in world.agents.columns]
-    # Those who lived then count for themselves, also where one is the parent of another.
+    # Agents alive then count separately, even if one is the parent of another.
     rows = world.agents.filter(lived | ~old).sort("agent_id")
     rows = rows.with_columns(pl.when(~old).then(pl.col(parents)))
     tree = genealogy(rows)
@@ -130,7 +137,12 @@ def descent_shares(world: WorldRecord, step: int) -> pl.DataFrame:
 
 
 def diverged(fresh: Sample, futures: Sequence[Futures]) -> list[Divergence]:
-    """Compares futures with fresh worlds, for each step from which there are futures, by species and measure."""
+    """Compares futures with fresh worlds, for each step from which there are futures, by species and measure.
+
+    Args:
+        fresh: The fresh worlds.
+        futures: Each world at a step, with its futures.
+    """
     found = []
     for step in sorted({past.step for past, _ in futures}):
         mine = [sample for past, sample in futures if past.step == step]
@@ -160,14 +172,14 @@ def overlaps(futures: Sequence[Futures]) -> list[Overlap]:
 
 
 def _generation_at(step: int, worlds: Sequence[WorldRecord]) -> float:
-    """Mean generation of the living at a step, over worlds; NaN if none had anyone."""
+    """The mean generation of the living at a step, over worlds; NaN if no agents were alive."""
     then = [last_generation(world.population.filter(pl.col("step") <= step)) for world in worlds]
     known = [each for each in then if each is not None]
     return float(np.mean(known)) if known else math.nan
 
 
 def _values(measures: Sequence[Measure], worlds: Sequence[WorldRecord]) -> Floats:
-    """The measures of each world that has all of them, each on its scale, (worlds, measures)."""
+    """The measures of each world that has all of them, each on its own scale, (worlds, measures)."""
     found = []
     for world in worlds:
         values = [measure.value(world) for measure in measures]
@@ -187,18 +199,18 @@ def _divergence(step: int, generation: float, name: str, futures: Sequence[Float
 
 
 def distance_ratio(groups: Sequence[Floats], fresh: Floats) -> tuple[float, float, float, float]:
-    """The mean distance between two values of one group, divided by that between two fresh values.
+    """The mean distance between two values of one group, divided by the mean distance between two fresh values.
 
-    The interval is Student's, of the logarithm, with the jackknife's variance: each value is left out in turn. It is
-    about these groups, not about others that might have been.
+    The interval is Student's interval of the logarithm with jackknife variance, leaving out each value in turn. It
+    applies to these groups, and does not generalize to other groups.
 
     Args:
-        groups: Values of futures of one world, each (n, measures), with n of at least 3.
-        fresh: Independent values, (m, measures), with m of at least 3.
+        groups: Values of the futures of each world, shape (n, measures) with n at least 3.
+        fresh: Independent values, shape (m, measures) with m at least 3.
 
     Returns:
-        The ratio, the ends of its 95 % interval, and the two-sided chance under equal distances; NaN where all
-        values of a side are equal.
+        The ratio, the bounds of its 95 % interval, and the two-sided p value for equal distances; NaN if all
+        values of one side are equal.
     """
     apart, without = _mean_distance(groups), [_distances_without(group) for group in groups]
     whole = [_mean_distance([group]) for group in groups]
@@ -218,7 +230,7 @@ def distance_ratio(groups: Sequence[Floats], fresh: Floats) -> tuple[float, floa
 
 
 def _mean_distance(groups: Sequence[Floats]) -> float:
-    """The mean distance between two values of one group, groups weighted alike; NaN without two values."""
+    """The mean distance between two values of one group, with equal weight for each group; NaN without two values."""
     known = [group for group in groups if len(group) > 1]
     sums = [_summed_distances(group).sum() / (len(group) * (len(group) - 1)) for group in known]
     return float(np.mean(sums)) if sums else math.nan
@@ -230,20 +242,21 @@ def _summed_distances(values: Floats) -> Floats:
 
 
 def _distances_without(values: Floats) -> Floats:
-    """The mean distance between two values with each value left out in turn, (n,)."""
+    """The mean distance between two values, leaving out each value in turn, (n,)."""
     own, n = _summed_distances(values), len(values)
     return (own.sum() - 2.0 * own) / ((n - 1) * (n - 2))
 
 
 def overlap(past: int, step: int, species: str, shares: Floats, draws: int = DRAWS) -> Overlap:
-    """The overlap of futures, and what permuted agents would give.
+    """The overlap of futures, and its expectation for permuted agents.
 
     Args:
-        past: seed of the world.
-        step: at which its futures part [step].
-        species: whose agents.
-        shares: of each agent in each future's living, (futures, agents), with two futures or more.
-        draws: permutations.
+        past: Seed of the world.
+        step: Step at which its futures diverge [step].
+        species: Species of the agents.
+        shares: Share of each future's living that descends from each agent, shape (futures, agents), with two futures
+            or more.
+        draws: Number of permutations.
     """
     rng = np.random.default_rng([SEED, past, step])
     seen = _mean_overlap(shares)
@@ -255,7 +268,7 @@ def overlap(past: int, step: int, species: str, shares: Floats, draws: int = DRA
 
 
 def _mean_overlap(shares: Floats) -> float:
-    """Σ min(p, q) over agents, mean over all pairs of futures, from (futures, agents)."""
+    """Σ min(p, q) over agents, averaged over all pairs of futures, from (futures, agents)."""
     ordered = np.sort(shares, axis=0)[::-1]  # the k-th largest share is the smaller one of k pairs
     futures = len(shares)
     return float((np.arange(futures) @ ordered).sum() / (futures * (futures - 1) / 2))

@@ -1,4 +1,4 @@
-"""Where evolution ended: the mean weights of the worlds of some runs, to be drawn on a landscape."""
+"""The end points of evolution: mean weights of the worlds of some runs, for drawing on a landscape."""
 
 import json
 import math
@@ -24,9 +24,9 @@ class End:
     """The mean weights of one world at its end.
 
     Attributes:
-        source: file or run, and the world's seed.
-        weights: by column of the genome.
-        reported: whether a study's source reports it, and no run.
+        source: The file or run, and the seed of the world.
+        weights: Mean weights by genome column.
+        reported: Whether it is reported by a study's source instead of measured in a run.
     """
 
     source: str
@@ -35,13 +35,17 @@ class End:
 
 
 def read_ends(path: Path, config: Config, species: str) -> list[End]:
-    """The ends of the worlds that a run's folder, its `summary.json`, or a `study.json` has.
+    """Reads the ends of worlds from a run's folder, its `summary.json`, or a `study.json`.
 
-    Of studies with several conditions only the rows of the config's own condition count, if there are any; of a
-    run with several species, the given one.
+    From studies with several conditions, only rows of the config's own condition are used, if there are any.
+
+    Args:
+        path: The folder or file.
+        config: Config of the landscape.
+        species: Species to read from runs with several species.
 
     Raises:
-        AssayError: There are none, or the file cannot be read.
+        AssayError: There are no ends, or the file cannot be read.
         RecordError: A run cannot be read.
     """
     name = brief(str(path))
@@ -89,7 +93,7 @@ def _summary_ends(content: Mapping[str, Any], path: Path, species: str) -> list[
 
 
 def _study_ends(content: Mapping[str, Any], path: Path, config: Config) -> list[End]:
-    """From tables with a row per world and weight (`drift_world`), else from those with a row per world."""
+    """Reads tables with a row per world and weight (`drift_world`), or else tables with a row per world."""
     tables = content.get("tables", {})
     rows = [row for table in tables.values() for row in table.get("rows", [])]
     points: dict[tuple[str, int], dict[str, float]] = {}
@@ -116,7 +120,7 @@ def _known(value: Any) -> bool:
 
 
 def reported_ends(config: Config) -> list[End]:
-    """Where worlds of a config's preset end by what the sources of studies report, in the genes of the config."""
+    """The ends that the sources of studies report for a config's preset, in the genes of the config."""
     return [
         End(f"{name}: {text}", parse_point(text, config), reported=True)
         for name, source in reported_figures(config.preset).items()
@@ -129,5 +133,10 @@ def _condition(row: Mapping[str, Any]) -> str:
 
 
 def on_surface(ends: Iterable[End], genes: Sequence[str]) -> list[tuple[End, tuple[float, float]]]:
-    """The ends that have both genes, with their points."""
+    """The ends that have both genes of a surface, with their points.
+
+    Args:
+        ends: Any ends.
+        genes: Genome columns of the surface's two genes.
+    """
     return [(end, (end.weights[genes[0]], end.weights[genes[1]])) for end in ends if set(genes) <= end.weights.keys()]

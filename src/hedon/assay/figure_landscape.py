@@ -22,7 +22,7 @@ _TITLES = {
 
 
 def draw_landscape(landscape: Landscape, ends: Sequence[End]) -> Figure:
-    """One panel per measure: the smooth surface, its optimum with intervals, and the ends."""
+    """Draws a panel per measure: the smooth surface, its optimum with intervals, and the ends of evolved runs."""
     with styled():
         figure = new_figure(9.0, 8.0)
         axes = figure.subplots(2, 2, squeeze=False).ravel()

@@ -1,15 +1,16 @@
-"""Fitness against frequency: is the rarer of two groups the fitter one?
+"""Fitness against frequency: is the rarer of two groups fitter?
 
-Worlds begin with several shares of the first group. If its selection coefficient per generation at share p is
-s(p) = a + b·p, the share drifts by s(p)·p(1 − p) per generation with a noise of variance proportional to p(1 − p). The
-maximum-likelihood estimate of that diffusion solves
+Worlds start with several shares of the first group. If its selection coefficient per generation at share p is
+s(p) = a + b·p, the share changes by s(p)·p(1 − p) per generation, with noise whose variance is proportional to
+p(1 − p). The maximum-likelihood estimate for this diffusion solves
 
     Σ Δp  = a ΣV  + b ΣpV
     Σ pΔp = a ΣpV + b Σp²V,   V = p(1 − p)Δg
 
-over the intervals of all worlds, with p at the beginning of each: so shares may move as far as they like within a
-world. Without b it is the coefficient of `contest`, with its interval. That of the line comes from a bootstrap over
-seeds: worlds of one seed with several shares begin with the same places, so they are drawn together.
+over the intervals of all worlds, with p at the start of each interval, so shares may change by any amount within a
+world. Without b, this is the coefficient of `contest`, with its interval. The interval of the line comes from a
+bootstrap over seeds. Worlds with the same seed and different shares start with the same positions, so they are
+resampled together.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,23 +37,23 @@ VERDICTS = {
     OPEN: "these worlds cannot tell",
 }
 GRID = 401
-"""Shares at which the line's interval is asked for 0."""
+"""Number of shares at which the line's interval is tested for containing 0."""
 _SEED = 20260803
 
 
 @dataclass(frozen=True, eq=False)
 class AtShare:
-    """How two groups fared in worlds that began with one share.
+    """The result of two groups in worlds that started with one share.
 
     Attributes:
-        start: share of the first group among the founders.
-        share: its mean over the worlds' generations, weighted by p(1 − p); NaN if it never varied.
-        selection: coefficient of the first group per generation.
-        end: share at the end, mean over worlds.
-        worlds: how many.
-        extinct: how many of them died out; they count for as long as they lived.
-        fixed, lost: worlds in which only the first, or only the second group was left.
-        generations: mean over worlds, at the end.
+        start: Share of the first group among the founders.
+        share: Its mean over the worlds' generations, weighted by p(1 − p); NaN if it never varied.
+        selection: Selection coefficient of the first group per generation.
+        end: Share at the end, averaged over worlds.
+        worlds: Number of worlds.
+        extinct: Number of worlds that died out; they are used for as long as they lived.
+        fixed, lost: Number of worlds in which only the first group, or only the second, was left.
+        generations: Mean generation at the end, averaged over worlds.
     """
 
     start: float
@@ -71,13 +72,14 @@ class Frequency:
     """Fitness of the first of two groups against its frequency.
 
     Attributes:
-        groups: their names.
-        shares: what was found at each, in ascending order.
-        slope: of the selection coefficient over the share, per generation: below 0, the rarer group is favored.
-        crossing: share at which the coefficient is 0, within the shares that worlds began with; NaN if there is none.
-            Its bounds are the shares at which the line's interval has 0.
-        line: shares, the line, and the bounds of its interval, (4, GRID).
-        verdict: one of `VERDICTS`.
+        groups: Names of the groups.
+        shares: Result at each starting share, in ascending order.
+        slope: Slope of the selection coefficient over the share, per generation; if below 0, the rarer group is
+            favored.
+        crossing: Share at which the coefficient is 0, within the range of starting shares; NaN if there is none. Its
+            bounds are the shares at which the line's interval contains 0.
+        line: Shares, the line, and the bounds of its interval, shape (4, GRID).
+        verdict: One of `VERDICTS`.
     """
 
     groups: tuple[str, str]
@@ -92,8 +94,8 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     """Estimates how the fitness of the first of two groups depends on its share.
 
     Args:
-        groups: names of the first and the second group.
-        worlds: numbers over time of the worlds that began with each share, two shares or more.
+        groups: Names of the first and the second group.
+        worlds: Numbers over time in the worlds that started with each share; two shares or more.
     """
     starts = sorted(worlds)
     seeds = sorted({lines.seed for start in starts for lines in worlds[start]})
@@ -129,7 +131,7 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
 
 
 def _sums(lines: Lines) -> Floats:
-    """Sums over the intervals of one world: Δp, pΔp, V, pV and p²V, with p at their beginnings and V = p(1 − p)Δg."""
+    """Sums over the intervals of one world: Δp, pΔp, V, pV and p²V, with p at their starts and V = p(1 − p)Δg."""
     share, change = lines.share[:-1], np.diff(lines.share)
     variation = share * (1.0 - share) * np.diff(lines.generation)
     parts = (change, share * change, variation, share * variation, share**2 * variation)
@@ -137,7 +139,7 @@ def _sums(lines: Lines) -> Floats:
 
 
 def _at_share(start: float, worlds: Sequence[Lines], sums: Floats) -> AtShare:
-    """What worlds of one share tell; `sums` are those of each seed."""
+    """The result of worlds that started with one share; `sums` contains the sums of each seed."""
     _, _, variation, first, _ = sums.sum(axis=0)
     ends = np.array([lines.share[-1] for lines in worlds])
     mean = first / variation if variation > 0 else np.nan
@@ -157,7 +159,7 @@ def _at_share(start: float, worlds: Sequence[Lines], sums: Floats) -> AtShare:
 
 
 def _verdict(low: Floats, high: Floats) -> str:
-    """What the interval of the line tells, from its ends and, for no crossing, all along."""
+    """The verdict from the interval of the line: from its ends and, if it never crosses 0, from its whole length."""
     if (low > 0).all() or (high < 0).all():
         return NONE
     if low[0] > 0 and high[-1] < 0:

@@ -1,4 +1,4 @@
-"""Each gene by itself: does fitness depend on it? Neutral genes show what chance alone gives."""
+"""Does fitness depend on each gene by itself? Neutral genes show what to expect by chance."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,15 +10,15 @@ from hedon.assay.resample import Floats, Ints, chance, permuted, within, world_d
 
 @dataclass(frozen=True)
 class GeneEffect:
-    """The quadratic dependence of relative fitness on one gene, others left free.
+    """The quadratic dependence of relative fitness on one gene, ignoring the others.
 
     Attributes:
-        gene: column of the genome.
-        slope: at 0, per unit of the gene.
-        slope_low, slope_high: its 95 % interval over worlds.
-        slope_p: two-sided chance of such a slope if genes do nothing: fitness exchanged among founders of a world.
-        curvature: second derivative.
-        curvature_low, curvature_high, curvature_p: likewise.
+        gene: Genome column of the gene.
+        slope: Slope at 0, per unit of the gene.
+        slope_low, slope_high: Bounds of its 95 % interval over worlds.
+        slope_p: Two-sided p value of the slope, from permutations of fitness among the founders of each world.
+        curvature: Second derivative.
+        curvature_low, curvature_high, curvature_p: Interval and p value of the curvature.
     """
 
     gene: str
@@ -38,11 +38,11 @@ def gene_effects(
     """The effect of each gene.
 
     Args:
-        genes: names.
-        z: genes of each founder, (n, genes).
-        fitness: relative to the mean of the own world, (n,).
-        world: of each founder, from 0 on, (n,).
-        rng: source of chance.
+        genes: Names of the genes.
+        z: Genes of each founder, shape (n, genes).
+        fitness: Fitness of each founder relative to the mean of its world, shape (n,).
+        world: Index of each founder's world, from 0, shape (n,).
+        rng: Source of random numbers.
     """
     deviation = within(fitness, world)
     null = within(permuted(fitness, world, rng), world)
@@ -65,13 +65,13 @@ def gene_effects(
 
 
 def flatness(terms: Floats, fitness: Floats, world: Ints, rng: np.random.Generator) -> float:
-    """The chance that terms explain as much of fitness as they do, or more, if genes do nothing.
+    """The chance that terms explain at least this much of fitness if genes have no effect.
 
     Args:
-        terms: of the regression, (n, p).
-        fitness: relative to the mean of the own world, (n,).
-        world: of each founder, from 0 on, (n,).
-        rng: source of chance.
+        terms: Terms of the regression, shape (n, p).
+        fitness: Fitness of each founder relative to the mean of its world, shape (n,).
+        world: Index of each founder's world, from 0, shape (n,).
+        rng: Source of random numbers.
     """
     x, _ = np.linalg.qr(within(terms, world))
     deviation = within(fitness, world)

@@ -1,4 +1,4 @@
-"""The landscape assay: founders spread over the genes, no mutation, and fitness as a surface over two of them."""
+"""The landscape assay: founders spread over all genes, no mutation, and fitness as a surface over two genes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,24 +19,24 @@ from hedon.error import HedonError
 from hedon.record.founder import Founders, make_founders
 
 NEUTRAL = 16
-"""Neutral genes of an assay: genes that are known to do nothing."""
+"""Number of neutral genes in an assay."""
 ROWS = 2000
-"""Genomes in the table that founders are taken from."""
+"""Number of genomes in the table of founders."""
 _SEED = 20260801
-_TAIL = 0.01  # of the founders' genes that lies beyond each bound of the surface
+_TAIL = 0.01  # share of the founders' genes beyond each bound of the surface
 
 
 class AssayError(HedonError):
-    """An assay that cannot be made or read."""
+    """An assay cannot be run or read."""
 
 
 @dataclass(frozen=True)
 class Spread:
-    """How founders are spread over each gene: evenly between two bounds, or normally around 0.
+    """The distribution of founders over each gene: even between two bounds, or normal around 0.
 
     Attributes:
-        low, high: bounds.
-        sd: standard deviation; None for an even spread.
+        low, high: The bounds.
+        sd: Standard deviation; None for an even distribution.
     """
 
     low: float
@@ -52,12 +52,12 @@ class MeasureSurface:
     """Relative fitness by one measure.
 
     Attributes:
-        measure: one of `MEASURES`.
-        mean: of the measure over founders, before it is made relative.
-        worlds: that enter; a world in which the measure's mean is 0 does not.
-        flat_p: chance that two genes explain this much or more if genes do nothing.
-        quadratic, smooth: the surfaces.
-        effects: of each gene by itself, neutral genes too.
+        measure: One of `MEASURES`.
+        mean: Mean of the absolute measure over founders.
+        worlds: Number of worlds used; worlds in which the mean of the measure is 0 are not.
+        flat_p: Chance that the two genes explain at least this much if genes have no effect.
+        quadratic, smooth: The fitted surfaces.
+        effects: Effect of each gene by itself, including neutral genes.
     """
 
     measure: str
@@ -71,16 +71,16 @@ class MeasureSurface:
 
 @dataclass(frozen=True, eq=False)
 class Landscape:
-    """What a landscape assay found.
+    """The results of a landscape assay.
 
     Attributes:
-        steps: of each world [step].
-        seeds: of its worlds.
-        extinct: seeds of worlds that died out.
-        founders: of each world.
-        genes: the two columns of the surface.
-        surfaces: by measure.
-        outcomes: a row per founder: seed, agent_id, genes, measures.
+        steps: Length of each world [step].
+        seeds: Seeds of its worlds.
+        extinct: Seeds of worlds that died out.
+        founders: Number of founders in each world.
+        genes: The two genome columns of the surface.
+        surfaces: The surfaces, by measure.
+        outcomes: A row per founder: seed, agent_id, genes, measures.
     """
 
     steps: int
@@ -93,21 +93,27 @@ class Landscape:
 
 
 def assay_config(config: Config) -> Config:
-    """The condition without mutation, and with the assay's neutral genes."""
+    """A config without mutation and with the assay's neutral genes."""
     return without_mutation(config).with_("genome.neutral_count", NEUTRAL)
 
 
 def without_mutation(config: Config) -> Config:
-    """A config without mutation, whose founders are not those of another run."""
+    """A config without mutation and without a table of founders."""
     for path, value in (("genome.mutation_scale", 0.0), ("genome.mutation", {}), ("world.founders", "")):
         config = config.with_(path, value)
     return config
 
 
 def spread_founders(config: Config, spread: Spread, species: str, rows: int = ROWS) -> Founders:
-    """A table of genomes of one species spread over all its genes, independently; the same for the same arguments.
+    """A table of genomes of one species, spread independently over all its genes; equal arguments give equal tables.
 
-    Those of the other species are drawn from the laws in the config.
+    Genomes of other species are drawn from the config's distributions.
+
+    Args:
+        config: Config of the worlds.
+        spread: The distribution of each gene.
+        species: The species whose genes are spread.
+        rows: Number of genomes.
     """
     prefix = f"{species}." if len(config.species) > 1 else ""
     columns = [prefix + name for name in layouts(config)[species].gene_names]
@@ -122,7 +128,7 @@ def spread_founders(config: Config, spread: Spread, species: str, rows: int = RO
 
 
 def _read_outcomes(worlds: Sequence[WorldRecord]) -> pl.DataFrame:
-    """A row per founder: world (from 0 on), seed, agent_id, genes, measures."""
+    """A row per founder: world (from 0), seed, agent_id, genes, measures."""
     tables = [
         founder_outcomes(world.agents, world.weight_names, world.last_step).select(
             pl.lit(i, pl.Int64).alias("world"), pl.lit(world.seed, pl.Int64).alias("seed"), pl.all()
@@ -135,8 +141,13 @@ def _read_outcomes(worlds: Sequence[WorldRecord]) -> pl.DataFrame:
 def measure_landscape(sample: Sample, genes: tuple[str, str], species: str | None = None) -> Landscape:
     """Fits the surfaces to finished worlds.
 
+    Args:
+        sample: The worlds.
+        genes: Genome columns of the two genes of the surface.
+        species: The species to measure; None for the only one.
+
     Raises:
-        AssayError: all worlds died out before anything could be measured.
+        AssayError: All worlds died out before anything could be measured.
     """
     worlds = sample.of_species(species)
     outcomes, names = _read_outcomes(worlds), worlds[0].weight_names
@@ -185,6 +196,6 @@ def _measure(
 
 
 def _bounds(pair: Floats) -> tuple[Floats, Floats]:
-    """Within which the surface is told: beyond are too few founders."""
+    """The bounds of the surface, beyond which there are too few founders."""
     low, high = np.quantile(pair, (_TAIL, 1.0 - _TAIL), axis=0)
     return low, high

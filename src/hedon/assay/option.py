@@ -1,4 +1,4 @@
-"""The options of assays: which genes, how founders are spread, which runs."""
+"""Options of assays: the genes, the distribution of founders, and the runs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -21,10 +21,15 @@ from hedon.text import brief
 
 
 def choose_genes(text: str | None, config: Config, species: str | None = None) -> tuple[str, str]:
-    """The columns of two genes of a species from a text such as "food,action", which is also the default.
+    """The genome columns of two genes of a species, from a text such as "food,action".
+
+    Args:
+        text: The two genes; None for food and action.
+        config: Config of the worlds.
+        species: Species that has the genes.
 
     Raises:
-        AssayError: They are not two genes of the config.
+        AssayError: The text does not name two genes of the config.
     """
     names = [name.strip() for name in (text if text is not None else "food,action").split(",")]
     own = choose_species(species, config)
@@ -39,10 +44,15 @@ def choose_genes(text: str | None, config: Config, species: str | None = None) -
 
 
 def parse_spread(text: str, sd: float | None, genome: GenomeConfig) -> Spread:
-    """How founders are spread, from a range such as "-8:8", or normally if `sd` is given.
+    """The distribution of founders: even over a range such as "-8:8", or normal if `sd` is given.
+
+    Args:
+        text: The range.
+        sd: Standard deviation of a normal distribution; None for an even one.
+        genome: Settings of the genome, with the weight limit.
 
     Raises:
-        AssayError: It is not a range within the weight limit, or the standard deviation is not above 0.
+        AssayError: The text is not a range within the weight limit, or the standard deviation is not above 0.
     """
     limit = genome.weight_limit
     if sd is not None:
@@ -62,14 +72,14 @@ def parse_spread(text: str, sd: float | None, genome: GenomeConfig) -> Spread:
 def assay_worlds(
     config: Config, seeds: Sequence[int], steps: int, founders: Founders | None, part: str = "run"
 ) -> Demand:
-    """Worlds that an assay needs, checked.
+    """Specifies and checks worlds that an assay needs.
 
     Args:
-        config: of the worlds.
-        seeds: of the worlds.
-        steps: of each world [step].
-        founders: to begin with; None for those that the config draws.
-        part: name of their run's folder.
+        config: Settings of the worlds.
+        seeds: Seeds of the worlds.
+        steps: Length of each world [step].
+        founders: Genomes of the founders; None to draw them from the config's distributions.
+        part: Name of the folder of their run.
     """
     plan = RunPlan(config, seeds, steps, part, founders=founders)
     each = dict.fromkeys(plan.seeds, plan.steps)
@@ -77,7 +87,12 @@ def assay_worlds(
 
 
 def assay_folder(kind: str, first: Demand) -> Path:
-    """The folder of an assay: more seeds and more steps of the same setting find what is there."""
+    """The folder of an assay. It is the same for any seeds and steps, so that assays can be extended.
+
+    Args:
+        kind: Kind of assay.
+        first: Specification of its first worlds, which determines the folder's name.
+    """
     return Path("assays") / f"{kind}-{first.config.name}-{first.config.fidelity}-{first.digest[:8]}"
 
 
@@ -86,8 +101,14 @@ def competitors(
 ) -> tuple[Founders, tuple[str, str]]:
     """Founders from two sources, and the names of their groups.
 
+    Args:
+        sources: The two sources, as for `--founders`.
+        shares: Share of each source among the founders.
+        config: Config of the worlds.
+        species: Species that competes.
+
     Raises:
-        AssayError: A source has no gene of the species, or its groups could not be told apart.
+        AssayError: A source has no gene of the species, or the groups could not be distinguished.
         FounderError: A source cannot be used.
         RecordError: A run cannot be read.
     """
@@ -102,12 +123,12 @@ def _joined(
 ) -> Founders:
     founders = join(tables, names, shares)
     if config.species[species].birth.mating == "pairs":
-        points_of(founders, names, species)  # raises where genes could not tell the groups apart
+        points_of(founders, names, species)  # raises if genes could not distinguish the groups
     return founders
 
 
 def _source(source: str, config: Config, species: str) -> Founders:
-    """The genes of one species; where there are several, each names it."""
+    """The genes of one species; with several species, the names of genes include it."""
     if len(config.species) == 1:
         return read_source(source, config)
     if "=" in source and not source.endswith(".csv"):
@@ -124,8 +145,13 @@ def _source(source: str, config: Config, species: str) -> Founders:
 def parse_shares(text: str, config: Config, species: str) -> tuple[float, ...]:
     """The shares of a group among the founders, in ascending order, from a text such as "0.05,0.5,0.95".
 
+    Args:
+        text: The shares.
+        config: Config of the worlds.
+        species: Species that competes.
+
     Raises:
-        AssayError: There are not two different shares, or one leaves a group without founders.
+        AssayError: There are fewer than two different shares, or one leaves a group without founders.
     """
     count = config.species[species].population.initial_count
     try:
@@ -144,12 +170,21 @@ def parse_shares(text: str, config: Config, species: str) -> tuple[float, ...]:
 
 
 def knocked_out(source: str, gene: str, config: Config, species: str) -> tuple[Founders, tuple[str, str]]:
-    """The living of a run with one gene set to 0, against themselves, and the names of both groups.
+    """Founders for a knockout: the living of a run with one gene set to 0, against the same agents unchanged.
+
+    Args:
+        source: The run, as RUN or RUN@STEP.
+        gene: The gene to set to 0.
+        config: Config of the worlds.
+        species: Species that competes.
+
+    Returns:
+        The founders, and the names of both groups.
 
     Raises:
-        AssayError: The run has no such gene, or the groups could not be told apart.
-        FounderError: Nobody lived then.
-        RecordError: It is not a run, or cannot be read.
+        AssayError: The run has no such gene, or the groups could not be distinguished.
+        FounderError: No agent was alive then.
+        RecordError: The source is not a run, or cannot be read.
     """
     column = column_of(config, gene if len(config.species) == 1 else f"{species}.{gene}")
     wild = _source(source, config, species)
@@ -160,7 +195,12 @@ def knocked_out(source: str, gene: str, config: Config, species: str) -> tuple[F
 
 
 def condition_of(given: str | None, sources: Sequence[str]) -> str:
-    """The preset or file that an assay takes place in: the given one, else that of the first run, else baseline."""
+    """The preset or config file of an assay: the given one, or that of the first run, or baseline.
+
+    Args:
+        given: The preset or file that the user gave; None for none.
+        sources: Sources of founders, some of which may be runs.
+    """
     if given is not None:
         return given
     folders = [Path(source.rpartition("@")[0] or source) for source in sources]
@@ -169,11 +209,15 @@ def condition_of(given: str | None, sources: Sequence[str]) -> str:
 
 
 def stability_config(config: Config, point: Mapping[str, float]) -> Config:
-    """A config whose founders begin around a point, with mutation as it is and the assay's neutral genes.
+    """A config whose founders start around a point, with unchanged mutation and the assay's neutral genes.
+
+    Args:
+        config: The config to change.
+        point: Mean of each gene among the founders, by column.
 
     Raises:
-        AssayError: The point has a neutral gene, or drift cannot be told: with several species, whose genes `--at`
-            does not name, or with two parents, since it is computed along pedigrees of one.
+        AssayError: The point has a neutral gene; there are several species, whose genes `--at` cannot name; or children
+            have two parents, while drift is computed along pedigrees with one.
     """
     if len(config.species) > 1:
         there = ", ".join(config.species)
@@ -197,19 +241,19 @@ def stability_config(config: Config, point: Mapping[str, float]) -> Config:
 def contingency_worlds(
     sources: Sequence[str], of: Sequence[int] | None, seeds: Sequence[int], fresh: Sequence[int], steps: int
 ) -> list[Demand]:
-    """The worlds of an assay of contingency: fresh ones first, then the futures of each world of each run.
+    """The worlds of a contingency assay: fresh worlds first, then the futures of each world of each run.
 
     Args:
         sources: Runs, each as RUN or RUN@STEP.
-        of: Seeds of the worlds that have futures; None for all worlds of the runs.
-        seeds: Of each world's futures.
+        of: Seeds of the worlds whose futures are run; None for all worlds of the runs.
+        seeds: Seeds of each world's futures.
         fresh: Seeds of fresh worlds.
-        steps: Total steps of each world.
+        steps: Total length of each world [step].
 
     Raises:
         AssayError: The runs differ in their settings, one of them is a branch, or a seed is used twice.
         RecordError: A run cannot be read, or lacks the checkpoint.
-        ArgumentError: A world cannot have several futures, or there is no such world.
+        ArgumentError: A world cannot have several futures, or does not exist.
     """
     demands: list[Demand] = []
     for source in sources:
@@ -240,7 +284,7 @@ def _continued(plan: RunPlan, seeds: Sequence[int], name: str) -> Demand:
 
 
 def _run_and_step(source: str) -> tuple[Path, int | None]:
-    """A run and the step of one of its checkpoints, from RUN or RUN@STEP."""
+    """The run in RUN or RUN@STEP, and the step of its checkpoint."""
     folder, at, step = source.rpartition("@")
     if not at or Path(source).is_dir():
         return Path(source), None

@@ -1,4 +1,4 @@
-"""What became of each founder and its descendants, from the records of a run without mutation."""
+"""The outcome of each founder and its descendants, from the records of a run without mutation."""
 
 from collections.abc import Sequence
 
@@ -20,13 +20,13 @@ def founder_outcomes(agents: pl.DataFrame, names: Sequence[str], last_step: int)
     """One row per founder of one world, by agent_id.
 
     Args:
-        agents: the world's rows of the table `agents`.
-        names: genome columns.
-        last_step: up to which the records reach [step].
+        agents: The world's rows of the table `agents`.
+        names: Genome columns.
+        last_step: Last recorded step [step].
 
     Returns:
-        agent_id, the genes, and a column for each of `MEASURES`. Without mutation the descendants of a founder have its
-        genes, where children have one parent.
+        agent_id, the genes, and a column for each of `MEASURES`. Without mutation, the descendants of a founder have
+        its genes if children have one parent.
     """
     rows = agents.sort("agent_id")
     tree = genealogy(rows)

@@ -1,4 +1,4 @@
-"""What all assays write: their worlds, and what was found."""
+"""The parts of a report that all assays share."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,17 @@ def assay_answer(
     figure: NamedFigure,
     files: Mapping[str, str] | None = None,
 ) -> Answer:
-    """What an assay found, with its worlds."""
+    """The answer of an assay, with a description of its worlds.
+
+    Args:
+        kind: Kind of assay.
+        samples: Its worlds.
+        content: Contents of the JSON file besides the tables.
+        tables: Tables of the results.
+        intro: Opening sentence.
+        figure: Figure of the results.
+        files: Contents of further files, by path.
+    """
     config = samples[0].demand.config
     head = {
         "assay": kind,
@@ -47,22 +57,27 @@ def assay_answer(
 
 
 def world_table(rows: Sequence[Mapping[str, Any]]) -> ResultTable:
-    """What was found in each world by itself, for `hedon compare` and `hedon power`."""
+    """A table of the results of each world, for `hedon compare` and `hedon power`."""
     return make_table(WORLDS, "Each world by itself", rows, shown=False)
 
 
 def world_line(samples: Sequence[Sample]) -> str:
-    """How many worlds there were, how long they lived, and which died out."""
+    """A sentence on how many worlds there were, how long they lived, and which died out."""
     return " ".join(sample.describe() for sample in samples)
 
 
 def estimate_row(labels: Mapping[str, Any], estimate: Estimate) -> dict[str, Any]:
-    """A row with a value and its interval."""
+    """A table row with a value and its interval.
+
+    Args:
+        labels: Further columns, which come first.
+        estimate: The value with its interval.
+    """
     return {**labels, "value": estimate.value, "low": estimate.low, "high": estimate.high}
 
 
 def finite_row(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A row with None for numbers that have no value."""
+    """A copy of a row with None in place of non-finite numbers."""
     return {
         name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in row.items()
     }

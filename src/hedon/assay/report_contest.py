@@ -17,10 +17,16 @@ _SHOWN_TIMES = 10
 
 
 def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Sequence[Sample]) -> Answer:
-    """What finished worlds of two groups tell.
+    """The results of finished worlds with two groups.
+
+    Args:
+        kind: Kind of assay.
+        groups: Names of the first and the second group.
+        species: Species that competes.
+        samples: The worlds.
 
     Raises:
-        AssayError: There is no table of founders, or its groups cannot be told apart.
+        AssayError: There is no table of founders, or its groups cannot be distinguished.
     """
     (sample,) = samples
     found = estimate(groups, sample_lines(sample, groups, species), sample.steps)
@@ -32,7 +38,7 @@ def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Se
 
 
 def contest_tables(contest: Contest) -> list[ResultTable]:
-    """The result, the course of the ratio, and each world."""
+    """Tables of the result, the course of the ratio, and each world."""
     first, second = contest.groups
     rows = [
         estimate_row({"quantity": "selection coefficient per generation"}, contest.selection) | {"p": contest.p},
@@ -74,7 +80,7 @@ def contest_tables(contest: Contest) -> list[ResultTable]:
 
 
 def draw_contest(contest: Contest) -> Figure:
-    """The share of the first group over time, world by world, and the log ratio of all worlds together."""
+    """Draws the share of the first group over time in each world, and the log ratio of all worlds together."""
     unit, name = step_unit(contest.steps)
     step, ratio, (low, high) = contest.course()
     with styled():

@@ -1,4 +1,4 @@
-"""The tables and the figure of futures compared with fresh worlds."""
+"""The tables and the figure of a contingency assay, which compares futures with fresh worlds."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -24,7 +24,7 @@ CAUTION = (
 
 
 def contingency_answer(samples: Sequence[Sample]) -> Answer:
-    """What fresh worlds, given first, and futures of other worlds tell."""
+    """The results of a contingency assay; the first sample contains the fresh worlds, the others futures."""
     fresh = samples[0]
     futures: list[Futures] = [(each.demand.past, each) for each in samples if each.demand.past is not None]
     found, shared = diverged(fresh, futures), overlaps(futures)
@@ -43,7 +43,12 @@ def contingency_answer(samples: Sequence[Sample]) -> Answer:
 
 
 def contingency_tables(found: Sequence[Divergence], shared: Sequence[Overlap]) -> list[ResultTable]:
-    """How far apart futures end, and whether they have the same ancestors."""
+    """Tables of how far apart futures end, and of whether they have the same ancestors.
+
+    Args:
+        found: Distances between futures, compared with fresh worlds.
+        shared: Overlap of the ancestors of futures.
+    """
     rows = [
         {
             "step": each.step,
@@ -92,14 +97,14 @@ def contingency_tables(found: Sequence[Divergence], shared: Sequence[Overlap]) -
 
 
 def verdict(each: Divergence) -> str:
-    """What the interval of the ratio tells, by the corrected chance."""
+    """The conclusion from the interval of the ratio, given the corrected p value."""
     if not each.p_holm < ALPHA:
         return "cannot tell" if np.isnan(each.p_holm) else "not shown"
     return "partly settled" if each.ratio < 1 else "futures lie further apart"
 
 
 def draw_contingency(found: Sequence[Divergence]) -> Figure:
-    """The ratio of each measure, with its interval, for each step from which there are futures."""
+    """Draws the ratio of each measure with its interval, for each step from which there are futures."""
     steps = sorted({each.step for each in found})
     measures = list(dict.fromkeys(each.measure for each in found))[::-1]
     with styled():
@@ -128,7 +133,7 @@ def _when(found: Sequence[Divergence], step: int) -> str:
 
 
 def _world_rows(fresh: Sample, futures: Sequence[Futures]) -> list[dict[str, Any]]:
-    """A row for each world; the past is what futures have in common."""
+    """A row for each world; the column of the past groups the futures of one world."""
     groups = [(FRESH, None, fresh), *((f"seed {past.seed} at {past.step}", past.step, each) for past, each in futures)]
     rows: dict[tuple[str, int], dict[str, Any]] = {}
     for name, step, sample in groups:

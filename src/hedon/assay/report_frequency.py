@@ -20,10 +20,16 @@ START = "share at the start"
 def frequency_answer(
     groups: tuple[str, str], species: str, shares: Sequence[float], samples: Sequence[Sample]
 ) -> Answer:
-    """What finished worlds of two groups tell, one sample for each share of the first.
+    """The results of finished worlds with two groups, with one sample for each starting share of the first.
+
+    Args:
+        groups: Names of the first and the second group.
+        species: Species that competes.
+        shares: Starting shares of the first group.
+        samples: The worlds of each share.
 
     Raises:
-        AssayError: There is no table of founders, or its groups cannot be told apart.
+        AssayError: There is no table of founders, or its groups cannot be distinguished.
     """
     pairs = zip(shares, samples, strict=True)
     of_share = {share: sample_lines(each, groups, species) for share, each in pairs}
@@ -42,7 +48,7 @@ def frequency_answer(
 
 
 def frequency_tables(found: Frequency) -> list[ResultTable]:
-    """Slope and crossing, and the selection coefficient at each share."""
+    """Tables of slope and crossing, and of the selection coefficient at each share."""
     first, second = found.groups
     rows = [
         estimate_row({"quantity": "slope of the selection coefficient over the share"}, found.slope),
@@ -78,7 +84,7 @@ def frequency_tables(found: Frequency) -> list[ResultTable]:
 
 
 def draw_frequency(found: Frequency) -> Figure:
-    """The selection coefficient at each share with its interval, the line through all of them, and where it is 0."""
+    """Draws the selection coefficient at each share with its interval, the fitted line, and the share where it is 0."""
     share, line, low, high = found.line
     with styled():
         figure = new_figure(5.6, 3.6)

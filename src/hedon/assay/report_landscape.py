@@ -20,10 +20,16 @@ OUTCOMES = "founders-outcome.csv"
 
 
 def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], samples: Sequence[Sample]) -> Answer:
-    """What finished worlds of spread founders tell: the surfaces, each gene by itself, fitness at the ends of runs.
+    """The results of a landscape assay: the surfaces, the effect of each gene, and fitness at the ends of runs.
+
+    Args:
+        genes: Genome columns of the two genes of the surfaces.
+        species: Species that is measured.
+        ends: Ends of evolved runs.
+        samples: The worlds.
 
     Raises:
-        AssayError: all worlds died out before anything could be measured.
+        AssayError: All worlds died out before anything could be measured.
     """
     found = measure_landscape(samples[0], genes, species)
     tables = [_surfaces(found), _effects(found), *_ends(found, ends), world_table(_slopes(found))]
@@ -35,7 +41,7 @@ def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], 
 
 
 def _slopes(landscape: Landscape) -> list[dict[str, Any]]:
-    """The slope of relative fitness at 0 over each gene of the surface, in each world by itself."""
+    """The slope of relative fitness at 0 along each gene of the surface, in each world separately."""
     rows = []
     for (seed,), founders in landscape.outcomes.group_by("seed", maintain_order=True):
         row = {"seed": seed}
@@ -43,14 +49,14 @@ def _slopes(landscape: Landscape) -> list[dict[str, Any]]:
             fitness = founders[measure].to_numpy().astype(np.float64)
             for gene in landscape.genes if fitness.mean() > 0 else ():
                 z = founders[gene].to_numpy().astype(np.float64)
-                # A parabola, as over all worlds together.
+                # A parabola, as for all worlds together.
                 row[f"{measure}: slope of {_short(gene)}"] = float(np.polyfit(z, fitness / fitness.mean(), 2)[1])
         rows.append(row)
     return rows
 
 
 def _landscape_json(landscape: Landscape) -> dict[str, Any]:
-    """What the summary holds besides the tables."""
+    """The contents of the summary besides the tables."""
     surfaces = {}
     for name, found in landscape.surfaces.items():
         smooth, quadratic = found.smooth, found.quadratic

@@ -1,4 +1,4 @@
-"""The tables, the summary and the figure of starts at chosen points."""
+"""The tables, the summary and the figure of a stability assay."""
 
 from collections.abc import Sequence
 
@@ -17,7 +17,12 @@ _COLORS = (BLUE, ORANGE)
 
 
 def stability_answer(points: Sequence[str], samples: Sequence[Sample]) -> Answer:
-    """What finished worlds tell of the points at which they began."""
+    """The results of finished worlds on the stability of the points at which they started.
+
+    Args:
+        points: The points, as given on the command line.
+        samples: The worlds that started at each point.
+    """
     starts = judge([measure_stability(sample) for sample in samples])
     content = [
         {
@@ -38,7 +43,7 @@ def stability_answer(points: Sequence[str], samples: Sequence[Sample]) -> Answer
 
 
 def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
-    """Where each weight ended, and its course."""
+    """Tables of the end and the course of each weight."""
     rows, courses, worlds = [], [], []
     for start in starts:
         for i, seed in enumerate(start.seeds):
@@ -103,7 +108,7 @@ def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
 
 
 def draw_stability(starts: Sequence[Stability]) -> Figure:
-    """One panel per reward weight: each world, the mean, and the band of neutral genes that begin likewise."""
+    """Draws a panel per reward weight: each world, the mean, and the band of neutral genes with the same start."""
     genes = list(starts[0].point)
     with styled():
         figure = new_figure(4.4 * len(genes), 3.4)

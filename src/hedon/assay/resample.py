@@ -1,4 +1,4 @@
-"""Intervals over worlds, and chances under the null that genes do nothing."""
+"""Intervals over worlds, and p values under the null hypothesis that genes have no effect."""
 
 import math
 from collections.abc import Sequence
@@ -13,29 +13,36 @@ from hedon.statistic.minimum import FOR_INTERVAL
 
 REPLICATES = 1000
 PERMUTATIONS = 999
-_FAILED = 0.05  # of the replicates that may have no value
+_FAILED = 0.05  # largest share of replicates without a value
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
 def world_draws(worlds: int, rng: np.random.Generator, replicates: int = REPLICATES) -> Floats:
-    """How often each world is drawn in each bootstrap sample, (replicates, worlds)."""
+    """How often each world is drawn in each bootstrap sample, shape (replicates, worlds).
+
+    Args:
+        worlds: Number of worlds.
+        rng: Source of random numbers.
+        replicates: Number of bootstrap samples.
+    """
     return rng.multinomial(worlds, np.full(worlds, 1.0 / worlds), replicates).astype(np.float64)
 
 
 def world_interval(values: NDArray[np.float64], worlds: int) -> Floats:
-    """Bounds of a 95 % interval from bootstrap samples of worlds, (2, …); NaN with too few worlds.
+    """A 95 % interval from bootstrap samples of worlds; NaN with too few worlds.
 
-    Percentiles are moved out as far as Student's t is wider than the normal law, and by the factor that a bootstrap of
-    few worlds is too narrow: Hesterberg (2015), "expanded percentile interval".
+    The percentiles are widened to account for Student's t instead of the normal distribution, and for the bias of a
+    bootstrap of few worlds: Hesterberg (2015), "expanded percentile interval".
 
     Args:
-        values: one per replicate, (replicates, …). There is no interval where more than one in twenty is not finite.
-        worlds: how many were drawn.
+        values: Value of each replicate, shape (replicates, …). There is no interval if more than one in twenty is not
+            finite.
+        worlds: Number of worlds drawn.
 
     Returns:
-        Lower and upper bound, (2, …).
+        Lower and upper bound, shape (2, …).
     """
     if worlds < FOR_INTERVAL:
         return np.full((2, *values.shape[1:]), np.nan)
@@ -49,7 +56,7 @@ def world_interval(values: NDArray[np.float64], worlds: int) -> Floats:
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with the bounds of its 95 % interval over worlds; NaN where there is none."""
+    """A number with the bounds of its 95 % interval over worlds; missing values are NaN."""
 
     value: float
     low: float
@@ -60,24 +67,24 @@ def bounded(value: float, replicates: NDArray[np.float64] | Sequence[float], wor
     """An estimate with its interval; see `world_interval`.
 
     Args:
-        value: of all worlds.
-        replicates: one per bootstrap sample, (replicates,).
-        worlds: how many were drawn.
+        value: The estimate from all worlds.
+        replicates: The estimate from each bootstrap sample, shape (replicates,).
+        worlds: Number of worlds drawn.
     """
     return Estimate(float(value), *map(float, world_interval(np.asarray(replicates), worlds)))
 
 
 def diffusion_strength(change: Floats, variation: Floats, worlds: int) -> Estimate:
-    """The strength of selection on a share, with an interval from how much the share wanders within worlds.
+    """The strength of selection on a share, with an interval from the fluctuations of the share within worlds.
 
-    The changes Δp less s·V are noise of mean 0 with a variance of its own at each moment, so that the sum of their
-    squares estimates the variance of ΣΔp. A bootstrap over worlds misses the truth in a quarter of cases with ten
-    worlds and in half with three, since worlds that have lost the group say almost nothing.
+    The changes Δp minus s·V are noise with mean 0 and a variance that differs between moments, so the sum of their
+    squares estimates the variance of ΣΔp. A bootstrap over worlds would miss the true value in a quarter of cases with
+    ten worlds, and in half with three, since worlds that have lost the group contain almost no information.
 
     Args:
-        change: Δp of each interval of each world, (intervals,).
-        variation: V = p(1 − p)Δg of each, (intervals,).
-        worlds: how many these are.
+        change: Δp of each interval of each world, shape (intervals,).
+        variation: V = p(1 − p)Δg of each interval, shape (intervals,).
+        worlds: Number of worlds.
 
     Returns:
         s = ΣΔp / ΣV per generation, and s ± 1.96 √Σ(Δp − sV)² / ΣV; NaN if the share never varied.
@@ -96,7 +103,7 @@ def share_estimate(shares: Floats) -> Estimate:
     """The mean share over worlds with Student's interval, within 0 and 1.
 
     Args:
-        shares: one per world, (worlds,).
+        shares: Share in each world, shape (worlds,).
     """
     found = mean_interval(shares.tolist(), within=SHARE)
     if found.mean is None or found.low is None or found.high is None:
@@ -105,11 +112,11 @@ def share_estimate(shares: Floats) -> Estimate:
 
 
 def within(values: Floats, world: Ints) -> Floats:
-    """Deviations from the mean of the own world.
+    """Deviations of values from the mean of their world.
 
     Args:
-        values: (n,) or (n, columns).
-        world: the world of each row, from 0 on, (n,).
+        values: The values, shape (n,) or (n, columns).
+        world: Index of each row's world, from 0, shape (n,).
 
     Returns:
         The shape of `values`.
@@ -122,24 +129,24 @@ def within(values: Floats, world: Ints) -> Floats:
 
 
 def relative(values: Floats, world: Ints) -> Floats:
-    """Values over the mean of the own world, (n,); NaN in a world whose mean is not above 0.
+    """Values divided by the mean of their world, shape (n,); NaN in a world whose mean is not above 0.
 
     Args:
-        values: (n,).
-        world: the world of each, from 0 on, (n,).
+        values: The values, shape (n,).
+        world: Index of each value's world, from 0, shape (n,).
     """
     mean = (np.bincount(world, values) / np.maximum(np.bincount(world), 1))[world]
     return np.where(mean > 0, values / np.where(mean > 0, mean, 1.0), np.nan)
 
 
 def permuted(values: Floats, world: Ints, rng: np.random.Generator, times: int = PERMUTATIONS) -> Floats:
-    """Values exchanged among the founders of each world, (n, times): what is expected if genes do nothing.
+    """Values permuted among the founders of each world, shape (n, times), as if genes had no effect.
 
     Args:
-        values: one per founder, (n,).
-        world: the world of each, from 0 on, (n,).
-        rng: source of chance.
-        times: how many permutations.
+        values: Value of each founder, shape (n,).
+        world: Index of each founder's world, from 0, shape (n,).
+        rng: Source of random numbers.
+        times: Number of permutations.
     """
     found = np.empty((len(values), times))
     for index in np.unique(world):
@@ -150,6 +157,11 @@ def permuted(values: Floats, world: Ints, rng: np.random.Generator, times: int =
 
 
 def chance(observed: Floats, null: Floats) -> Floats:
-    """Two-sided chance of a value at least this far from 0 under the null."""
+    """The two-sided p value of an observation, from values under the null hypothesis.
+
+    Args:
+        observed: Observed values, any shape.
+        null: Values under the null hypothesis; the same shape with a last axis for permutations.
+    """
     beyond = (np.abs(null) >= np.abs(observed)[..., None] * (1 - 1e-12)).sum(axis=-1)
     return (1.0 + beyond) / (1.0 + null.shape[-1])

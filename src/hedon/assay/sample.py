@@ -1,4 +1,4 @@
-"""The worlds of an assay, by the setting that they begin with."""
+"""The worlds of an assay, grouped by their initial condition."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ from hedon.text import count
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """Worlds that begin alike but for their seeds.
+    """Worlds that differ only in their seeds.
 
     Attributes:
-        demand: which worlds they are.
-        runs: that hold them.
-        worlds: one record for each seed and species, as long as they need be.
+        demand: The specification of the worlds.
+        runs: The runs that contain them.
+        worlds: One record for each seed and species, cut at the required length.
     """
 
     demand: Demand
@@ -27,15 +27,15 @@ class Sample:
 
     @property
     def steps(self) -> int:
-        """Of each world [step]."""
+        """The length of each world [step]."""
         return max(self.demand.steps.values())
 
     def of_species(self, species: str | None) -> list[WorldRecord]:
-        """The records of one species, by seed; of all, where it is None."""
+        """The records of one species, by seed; those of all species for None."""
         return [world for world in self.worlds if species in (None, world.species)]
 
     def describe(self) -> str:
-        """How many worlds there are, how long they lived, and which died out, as a sentence."""
+        """A sentence on how many worlds there are, how long they lived, and which died out."""
         pairs = [pair for run in self.runs for pair in zip(run.manifest.seeds, run.manifest.extinct_steps, strict=True)]
         died = {seed: step for seed, step in pairs if seed in self.demand.steps and step is not None}
         said = [f"seed {seed} at step {step:,}" for seed, step in died.items() if step <= self.steps]
@@ -46,13 +46,17 @@ class Sample:
 
 
 def read_samples(demands: Sequence[Demand], folder: Path) -> list[Sample]:
-    """Reads the worlds of an assay whose runs are there.
+    """Reads the worlds of an assay from existing runs.
+
+    Args:
+        demands: The specification of the worlds.
+        folder: Folder of the runs.
 
     Raises:
-        RecordError: a run cannot be read.
+        RecordError: A run cannot be read.
     """
     samples = []
-    for demand in demands:  # each by itself: futures of one world and fresh worlds may have equal settings and seeds
+    for demand in demands:  # separately, since futures and fresh worlds may have equal settings and seeds
         ensemble = find_ensemble([demand], folder)
         keys = [(demand.digest, seed, species) for seed in demand.steps for species in demand.config.species]
         worlds = tuple(ensemble.worlds[key].until(demand.steps[key[1]]) for key in keys if key in ensemble.worlds)

@@ -1,4 +1,4 @@
-"""Evolution from a claimed end point: does it stay there?"""
+"""Does evolution stay at a claimed end point if it starts there?"""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ from hedon.statistic.interval import Interval, mean_interval
 from hedon.statistic.law import normal_above, normal_below
 
 TIMES = 50
-"""Intervals of a course."""
+"""Number of intervals in a course."""
 ALPHA = 0.05
 VERDICTS = {
     "leaves": "moved further in one direction than neutral genes of the same pedigrees do",
@@ -27,20 +27,21 @@ VERDICTS = {
 
 @dataclass(frozen=True, eq=False)
 class WeightCourse:
-    """One weight over time in all worlds that began at one point.
+    """One weight over time in all worlds that started at one point.
 
     Attributes:
-        gene: column.
-        start: mean of the founders' law.
-        step: moments [step], (times,).
-        mean: over the living of each world, (worlds, times); NaN after a world died out.
-        null: bounds between which 95 % of neutral genes' means over worlds lie that begin as it does, (2, times).
-        end: mean over worlds at the end, with Student's interval.
-        score: mean standard normal score of the end among neutral genes.
-        p: two-sided chance of such a score under drift (Stouffer).
-        p_held: chance of ends as close to the start, or closer, under drift.
-        p_holm, p_held_holm: corrected for both tests of all reward genes and starts; for a neutral gene, for its two.
-        verdict: one of `VERDICTS`, by the corrected chances.
+        gene: Genome column of the weight.
+        start: Mean of the founders' distribution.
+        step: Moments [step], shape (times,).
+        mean: Mean over the living of each world, shape (worlds, times); NaN after a world died out.
+        null: 95 % bounds of the mean over worlds of neutral genes with the same start, shape (2, times).
+        end: Mean over worlds at the end, with Student's interval.
+        score: Mean standard normal score of the end among neutral genes.
+        p: Two-sided p value of the score under drift (Stouffer).
+        p_held: Chance of ends as close to the start, or closer, under drift.
+        p_holm, p_held_holm: The two p values, corrected for both tests of all reward genes and starts; for a neutral
+            gene, only for its own two tests.
+        verdict: One of `VERDICTS`, from the corrected p values.
     """
 
     gene: str
@@ -59,16 +60,16 @@ class WeightCourse:
 
 @dataclass(frozen=True, eq=False)
 class Stability:
-    """The worlds that began at one point.
+    """The worlds that started at one point.
 
     Attributes:
-        name: of the start.
-        point: means of the founders' reward genes, by column.
-        worlds: how many.
-        extinct: how many died out.
-        generations: mean over worlds.
-        courses: of each weight, neutral genes too, by column.
-        seeds: of the worlds in the courses.
+        name: Name of the start.
+        point: Means of the founders' reward genes, by column.
+        worlds: Number of worlds.
+        extinct: Number of worlds that died out.
+        generations: Number of generations, averaged over worlds.
+        courses: Course of each weight and neutral gene, by column.
+        seeds: Seeds of the worlds in the courses.
     """
 
     name: str
@@ -81,7 +82,7 @@ class Stability:
 
 
 def measure_stability(sample: Sample) -> Stability:
-    """Where the weights of finished worlds went."""
+    """Measures the courses of all weights in finished worlds."""
     worlds, steps = sample.worlds, sample.steps
     found = [world_course(world, steps / TIMES, generator(world)) for world in worlds]
     courses = [course for course in found if course is not None]
@@ -103,13 +104,13 @@ def weight_course(name: str, start: float, step: Floats, courses: Sequence[World
     """One weight over time in the worlds that have a course.
 
     Args:
-        name: Column of the gene.
-        start: Mean of the founders' law.
-        step: Moments [step], (times,).
-        courses: One per world.
+        name: Genome column of the weight.
+        start: Mean of the founders' distribution.
+        step: Moments [step], shape (times,).
+        courses: Course of each world.
 
     Returns:
-        The course, without verdict. Its `p` are NaN where no world can tell: no course, or a gene that cannot change.
+        The course, without a verdict. Its p values are NaN if no world has a course, or the gene cannot change.
     """
     mean = np.full((len(courses), len(step)), np.nan)
     for row, course in zip(mean, courses, strict=True):
@@ -140,13 +141,13 @@ def weight_course(name: str, start: float, step: Floats, courses: Sequence[World
 
 
 def _known(scores: Sequence[float]) -> Floats:
-    """The scores without NaN, which a gene has that cannot change."""
+    """The scores without NaN, which marks genes that cannot change."""
     every = np.array(scores, float)
     return every[np.isfinite(every)]
 
 
 def judge(starts: Sequence[Stability]) -> list[Stability]:
-    """The same starts with verdicts, corrected by Holm: both tests of every reward gene and start are one family."""
+    """Adds verdicts after Holm correction; both tests of every reward gene and start form one family."""
     reward = [(start.name, name) for start in starts for name in start.point]
     courses = {(start.name, name): course for start in starts for name, course in start.courses.items()}
     corrected = _corrected([courses[key] for key in reward])

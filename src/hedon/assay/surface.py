@@ -1,9 +1,9 @@
 """Relative fitness as a function of two genes: a quadratic and a smooth surface, with intervals over worlds.
 
-The quadratic surface is ω = c + β·z + ½ zᵀΓz (Lande & Arnold 1983). The smooth one is a tensor product of cubic
-B-splines with a penalty on second differences of its coefficients (Eilers & Marx 1996): where the data show no more, it
-is a twisted plane. Its smoothness has the least generalized cross-validation. Both are fitted to deviations from the
-means of each world, so that worlds may differ, and are placed so that the mean over the founders is 1.
+The quadratic surface is ω = c + β·z + ½ zᵀΓz (Lande & Arnold 1983). The smooth surface is a tensor product of cubic
+B-splines with a penalty on second differences of its coefficients (Eilers & Marx 1996); if the data show no further
+structure, it is a twisted plane. Its smoothness minimizes generalized cross-validation. Both surfaces are fitted to
+deviations from the mean of each world, so that worlds may differ, and are shifted so that the mean over founders is 1.
 """
 
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ from hedon.assay.resample import Estimate, Floats, Ints, bounded, within, world_
 interpolate: Any = load("scipy.interpolate", suppress_warning=True)  # takes a tenth of a second to load
 
 INTERVALS = 4
-"""Pieces of the spline along each gene."""
+"""Number of spline intervals along each gene."""
 GRID = 41
-"""Points along each gene at which the smooth surface is told."""
+"""Number of grid points along each gene for the smooth surface."""
 _DEGREE = 3
 _PENALTIES = np.logspace(-2, 7, 28)
-_RIDGE = 1e-8  # makes up for the constant, which the means of worlds take away
+_RIDGE = 1e-8  # makes up for the constant, which subtracting the means of worlds removes
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +30,11 @@ class Quadratic:
     """The quadratic surface.
 
     Attributes:
-        slope: at 0, of each gene.
-        curvature: second derivative along each gene; negative where fitness has a maximum.
-        interaction: mixed second derivative.
-        optimum: where the slope is 0, of each gene; NaN unless it is a maximum.
-        coefficients: β1, β2, Γ11, Γ22, Γ12, (5,).
+        slope: Slope at 0 along each gene.
+        curvature: Second derivative along each gene; negative if fitness has a maximum.
+        interaction: Mixed second derivative.
+        optimum: Value of each gene at which the slope is 0; NaN unless it is a maximum.
+        coefficients: β1, β2, Γ11, Γ22, Γ12, shape (5,).
     """
 
     slope: tuple[Estimate, Estimate]
@@ -49,17 +49,17 @@ class Smooth:
     """The smooth surface on a grid.
 
     Attributes:
-        axes: values of the two genes along the grid, (2, GRID).
-        value: relative fitness, (GRID, GRID): first gene along the rows.
-        low, high: bounds of its 95 % interval, pointwise, shape as `value`.
-        slope: at 0, of each gene.
-        optimum: where the surface is highest, of each gene.
-        at_edge: whether it is highest at the edge of the range, beyond which it may rise further.
-        freedom: effective number of parameters; 3 is a twisted plane.
-        coefficients, draws: of the spline, (K²,), and in each bootstrap sample, (replicates, K²).
-        shift: puts the mean over founders to 1; for the estimate and each sample, (1 + replicates,).
-        knots: of each gene, (2, K + degree + 1).
-        worlds: that entered.
+        axes: Values of the two genes along the grid, shape (2, GRID).
+        value: Relative fitness, shape (GRID, GRID), with the first gene along the rows.
+        low, high: Bounds of its pointwise 95 % interval, with the shape of `value`.
+        slope: Slope at 0 along each gene.
+        optimum: Value of each gene at which the surface is highest.
+        at_edge: Whether it is highest at the edge of the range, beyond which it may rise further.
+        freedom: Effective number of parameters; 3 means a twisted plane.
+        coefficients, draws: Spline coefficients, shape (K²,), and those of each bootstrap sample, (replicates, K²).
+        shift: Constant that makes the mean over founders 1, for the estimate and each sample, (1 + replicates,).
+        knots: Knots of each gene, shape (2, K + degree + 1).
+        worlds: Number of worlds used.
     """
 
     axes: Floats
@@ -77,7 +77,7 @@ class Smooth:
     worlds: int
 
     def at(self, points: Floats) -> list[Estimate]:
-        """Relative fitness at points within the range, (count, 2)."""
+        """Relative fitness at points within the range, shape (count, 2)."""
         basis = _basis(points, self.knots)
         return [
             bounded(values[0], values[1:], self.worlds)
@@ -86,7 +86,7 @@ class Smooth:
 
 
 def quadratic_terms(z: Floats) -> Floats:
-    """The columns of the quadratic surface's design, (n, 5), so that their coefficients are derivatives at 0."""
+    """The design matrix of the quadratic surface, shape (n, 5), whose coefficients are derivatives at 0."""
     x, y = z.T
     return np.stack([x, y, x * x / 2, y * y / 2, x * y], axis=1)
 
@@ -95,10 +95,10 @@ def fit_quadratic(z: Floats, fitness: Floats, world: Ints, rng: np.random.Genera
     """Fits the quadratic surface.
 
     Args:
-        z: the two genes of each founder, (n, 2).
-        fitness: relative to the mean of the own world, (n,).
-        world: of each founder, from 0 on, (n,).
-        rng: source of chance.
+        z: The two genes of each founder, shape (n, 2).
+        fitness: Fitness of each founder relative to the mean of its world, shape (n,).
+        world: Index of each founder's world, from 0, shape (n,).
+        rng: Source of random numbers.
     """
     terms, deviation = within(quadratic_terms(z), world), within(fitness, world)
     scale = terms.std(axis=0)
@@ -117,11 +117,11 @@ def fit_smooth(
     """Fits the smooth surface within bounds.
 
     Args:
-        z: the two genes of each founder, (n, 2).
-        fitness: relative to the mean of the own world, (n,).
-        world: of each founder, from 0 on, (n,).
-        bounds: lower and upper bound of the two genes, (2,) each; founders beyond count as if they were at the bound.
-        rng: source of chance.
+        z: The two genes of each founder, shape (n, 2).
+        fitness: Fitness of each founder relative to the mean of its world, shape (n,).
+        world: Index of each founder's world, from 0, shape (n,).
+        bounds: Lower and upper bounds of the two genes, shape (2,) each; genes beyond are moved to the bound.
+        rng: Source of random numbers.
     """
     knots = np.stack([_knots(low, high) for low, high in zip(*bounds, strict=True)])
     inside = np.clip(z, *bounds)
@@ -158,7 +158,7 @@ def fit_smooth(
 
 
 def _moments(terms: Floats, deviation: Floats, world: Ints) -> tuple[int, Floats, Floats]:
-    """Number of worlds, and XᵀX and Xᵀy of each."""
+    """The number of worlds, and XᵀX and Xᵀy of each."""
     indices = np.unique(world)
     parts = [(terms[world == index], deviation[world == index]) for index in indices]
     return len(indices), np.stack([x.T @ x for x, _ in parts]), np.stack([x.T @ y for x, y in parts])
@@ -186,7 +186,7 @@ def _knots(low: float, high: float) -> Floats:
 
 
 def _basis(points: Floats, knots: Floats, slope: int | None = None) -> Floats:
-    """Tensor product of the two genes' bases at points, (count, K²), or its derivative along one gene."""
+    """The tensor product of the two genes' bases at points, (count, K²), or its derivative along one gene."""
     bases = []
     for gene in range(2):
         functions = np.eye(len(knots[gene]) - _DEGREE - 1)
@@ -201,7 +201,7 @@ def _penalty(size: int) -> Floats:
 
 
 def _choose(left: Floats, right: Floats, penalty: Floats, deviation: Floats) -> tuple[float, float]:
-    """The smoothness with the least generalized cross-validation, and the effective number of parameters."""
+    """The smoothness that minimizes generalized cross-validation, and the effective number of parameters."""
     found = []
     for smoothness in _PENALTIES:
         inverse = np.linalg.inv(left + smoothness * penalty + _RIDGE * np.eye(len(left)))
