@@ -1,4 +1,4 @@
-"""Checks whether a run's folder is complete and consistent, and what can still be used. Needs no engine."""
+"""Checks whether a run's folder is complete and consistent, and which data are still usable. Needs no engine."""
 
 from lazy_loader import attach_stub
 

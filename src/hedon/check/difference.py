@@ -1,4 +1,4 @@
-"""Why two runs differ: their settings, what made them, and where their worlds part."""
+"""Why two runs differ: their settings, their provenance, and the point at which their worlds diverge."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -13,23 +13,23 @@ from hedon.record.manifest import Manifest
 from hedon.record.reader import open_run
 
 MADE_BY = ("hedon_version", "git_revision", "git_modified", "backend", "schema", "python", "platform")
-"""Parts of a manifest that may explain different results of equal settings."""
+"""Fields of a manifest that may explain different results for equal settings."""
 _NAMES = ("world", "seed", "species")
 
 
 @dataclass(frozen=True)
 class Parting:
-    """Where the records of two worlds of one seed part.
+    """The point at which the records of two worlds with the same seed diverge.
 
     Attributes:
-        seed: of both.
-        species: whose records part first; empty where there is only one.
-        step: end of the first window in which they differ, or birth of the first agent that does [step]; None if they
-            are equal.
-        agent: id of that agent; None where a window differs.
-        values: what differs there, by column: in the first and in the second run.
-        since: from which step on both have records: 0, or where a branch begins [step].
-        until: up to which step both have records [step].
+        seed: Seed of both worlds.
+        species: Species whose records diverge first; empty if there is only one.
+        step: End of the first window that differs, or birth of the first agent that differs [step]; None if the
+            records are equal.
+        agent: ID of that agent; None if a window differs.
+        values: The differing values by column, in the first and in the second run.
+        since: First step for which both have records: 0, or the start of a branch [step].
+        until: Last step for which both have records [step].
     """
 
     seed: int
@@ -43,14 +43,14 @@ class Parting:
 
 @dataclass(frozen=True)
 class Difference:
-    """What tells two runs apart.
+    """The differences between two runs.
 
     Attributes:
-        settings: paths with the value in each.
-        made_by: parts of the manifests with the value in each.
-        partings: one for each seed that both have.
-        ends: seeds whose records are equal, but not the digests of their ends at the same step.
-        lonely: seeds that only one of them has.
+        settings: Paths of differing settings, with the values in both runs.
+        made_by: Differing fields of the manifests, with the values in both runs.
+        partings: Comparison of each seed that both runs have.
+        ends: Seeds whose records are equal, but whose last states at the same step have different digests.
+        lonely: Seeds that only one of the runs has.
     """
 
     settings: list[tuple[str, Any, Any]]
@@ -61,16 +61,20 @@ class Difference:
 
     @property
     def same(self) -> bool:
-        """Whether settings and records agree; other versions of the program may have made them."""
+        """Whether settings and records are equal, even if different versions of hedon made them."""
         return not (self.settings or self.ends or self.lonely or any(each.values for each in self.partings))
 
 
 def compare_runs(a: Path, b: Path) -> Difference:
     """Compares two runs, finished or not.
 
+    Args:
+        a: Folder of the first run.
+        b: Folder of the second run.
+
     Raises:
-        RecordError: one is not a run, or cannot be read.
-        ConfigError: the config of one cannot be read.
+        RecordError: One of them is not a run, or cannot be read.
+        ConfigError: The config of one of them cannot be read.
     """
     runs = [open_run(path).load() for path in (a, b)]
     one, two = (run.manifest for run in runs)
@@ -96,7 +100,7 @@ def _by_seed(worlds: Sequence[WorldRecord]) -> dict[int, dict[str, WorldRecord]]
 
 
 def _parting(seed: int, first: dict[str, WorldRecord], second: dict[str, WorldRecord]) -> Parting:
-    """Compares windows first, then the lives of agents; of several species the one that parts first counts."""
+    """Compares windows first, then the lives of agents; with several species, the first to diverge is reported."""
     shared = [name for name in first if name in second]
     every = [each for pair in (first, second) for each in pair.values()]
     until = min([each.recorded_step() for each in every], default=0)
@@ -117,13 +121,13 @@ def _parting(seed: int, first: dict[str, WorldRecord], second: dict[str, WorldRe
 
 
 def _since(world: WorldRecord, step: int) -> WorldRecord:
-    """The world without the agents that had died when the records of a branch begin [step]."""
+    """The world without agents that died before the records of a branch start [step]."""
     died = pl.col("death_step")
     return replace(world, agents=world.agents.filter(died.is_null() | (died > step))) if step else world
 
 
 def _lives(one: WorldRecord, two: WorldRecord, *, cut: bool) -> tuple[pl.DataFrame, pl.DataFrame]:
-    """Their agents; where a record was cut, what it does not say of the living is left out of the other too."""
+    """Their agents; if one record was cut, values that it lacks for the living are set to null in both."""
     if not cut:
         return one.agents, two.agents
     known = {"world", "seed", "species", "agent_id", "parent_id", "generation", "birth_step", "birth_energy"}
@@ -136,9 +140,9 @@ def _lives(one: WorldRecord, two: WorldRecord, *, cut: bool) -> tuple[pl.DataFra
 def _first_row(
     one: pl.DataFrame, two: pl.DataFrame, key: str, order: str, how: Literal["inner", "full"]
 ) -> tuple[int, int, dict[str, tuple[Any, Any]]] | None:
-    """The first row in which two tables differ: its order, its key, and the values that differ; None if none does.
+    """The first row in which two tables differ: its order, its key, and the differing values; None if they are equal.
 
-    Of windows only those count that both have: a run that ends within one has a row there that a longer one lacks.
+    Only windows in both tables are compared, since a run that ends within a window has a row that a longer run lacks.
     """
     columns = [name for name in one.columns if name in two.columns and name not in (*_NAMES, key)]
     both = one.select(key, *columns).join(two.select(key, *columns), on=key, how=how, coalesce=True, suffix=" 2")
@@ -154,12 +158,12 @@ def _first_row(
 def _changed(row: dict[str, Any], columns: Sequence[str]) -> Iterator[tuple[str, tuple[Any, Any]]]:
     for name in columns:
         before, after = row[name], row[f"{name} 2"]
-        if before != after and not (before != before and after != after):  # NaN is NaN
+        if before != after and not (before != before and after != after):  # NaN equals NaN here
             yield name, (before, after)
 
 
 def _ends_differ(one: Manifest, two: Manifest, seed: int) -> bool:
-    """Whether the worlds of a seed ended at the same step in other states."""
+    """Whether the worlds of a seed ended at the same step in different states."""
     ends = []
     for manifest in (one, two):
         index = manifest.seeds.index(seed)

@@ -1,4 +1,4 @@
-"""The results of a check: what is wrong, notes, what can still be used."""
+"""The results of a check: faults, notes, and data that are still usable."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -6,16 +6,16 @@ from dataclasses import dataclass
 import polars as pl
 
 SHOWN = 3
-"""Most rows that a finding names."""
+"""Largest number of rows that a finding lists."""
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing that is wrong.
+    """One fault.
 
     Attributes:
-        where: A file, by its path within the run's folder, or a table.
-        what: What is wrong with it.
+        where: A table, or the path of a file within the run's folder.
+        what: Description of the fault.
     """
 
     where: str
@@ -27,9 +27,9 @@ class CheckResult:
     """The results of a check of one run.
 
     Attributes:
-        findings: What is wrong; empty if nothing is.
-        notes: What the user should know but is not wrong, such as what was not checked, and why.
-        usable: What can still be used.
+        findings: The faults; empty if there are none.
+        notes: Remarks that are not faults, such as what was not checked, and why.
+        usable: Data that are still usable.
     """
 
     findings: tuple[Finding, ...]
@@ -38,7 +38,14 @@ class CheckResult:
 
 
 def break_rules(rows: pl.DataFrame, table: str, keys: Sequence[str], rules: Mapping[str, pl.Expr]) -> Iterator[Finding]:
-    """One finding for each rule that some rows break."""
+    """Yields one finding for each rule that some rows break.
+
+    Args:
+        rows: The rows to check.
+        table: Name of the table, for the findings.
+        keys: Columns that identify a row.
+        rules: Descriptions of faults, each with an expression that is true for the faulty rows.
+    """
     for what, wrong in rules.items():
         found = rows.filter(wrong)
         if found.height:
@@ -46,7 +53,7 @@ def break_rules(rows: pl.DataFrame, table: str, keys: Sequence[str], rules: Mapp
 
 
 def _name_rows(rows: pl.DataFrame, keys: Sequence[str]) -> str:
-    """The first rows by their keys, and how many more there are."""
+    """The keys of the first rows, and the number of further rows."""
     words = [key.removesuffix("_id") for key in keys]
     names = [
         " ".join(f"{word} {value}" for word, value in zip(words, row, strict=True))

@@ -1,4 +1,4 @@
-"""Checks the founders of a run against the table that they were to come from."""
+"""Checks the founders of a run against the table from which they should come."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,7 +17,14 @@ from hedon.record.manifest import Manifest
 def check_founders(
     folder: Path, config: Config | None, manifest: Manifest | None, agents: pl.DataFrame | None
 ) -> Iterator[Finding]:
-    """What is wrong with the table of founders, and with the founders among the agents."""
+    """Checks the table of founders, and the founders among the agents.
+
+    Args:
+        folder: Folder of the run.
+        config: Config of the run; None if it cannot be read.
+        manifest: Manifest of the run; None if it cannot be read.
+        agents: Rows of the table `agents`; None if they are incomplete.
+    """
     if config is None:
         return
     try:
@@ -28,7 +35,7 @@ def check_founders(
     if founders is None or manifest is None or agents is None:
         return
     first, made = 0, layouts(config)
-    for name, species in config.species.items():  # founders have ids in the order of their species
+    for name, species in config.species.items():  # IDs of founders follow the order of species
         count, genes = species.population.initial_count, made[name].gene_names
         own = pl.col("agent_id").is_between(first, first + count - 1) & (pl.col("generation") == 0)
         for world, seed in enumerate(manifest.seeds):

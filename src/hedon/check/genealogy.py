@@ -1,4 +1,4 @@
-"""Checks the table `agents`: every agent once, with known parents and a possible life."""
+"""Checks the table `agents`: every agent appears once, with known parents and a possible life."""
 
 from collections.abc import Collection, Iterator
 from itertools import islice, pairwise
@@ -15,7 +15,14 @@ _KEYS = ("world", "agent_id")
 def check_agents(
     agents: pl.DataFrame, manifest: Manifest, pairs: Collection[str] | None, *, complete: bool
 ) -> Iterator[Finding]:
-    """What is wrong with the agents of a run."""
+    """Checks the agents of a run.
+
+    Args:
+        agents: Rows of the table `agents`.
+        manifest: Manifest of the run.
+        pairs: Species whose children have two parents; None if unknown.
+        complete: Whether all parts of the table are present.
+    """
     yield from break_rules(agents, "agents", _KEYS, _life_rules(manifest))
     unique = agents.unique(_KEYS, keep="first", maintain_order=True)
     family = _with_parents(unique, manifest)
@@ -26,12 +33,12 @@ def check_agents(
 
 
 def first_step(manifest: Manifest) -> int:
-    """The step at which the tables of a run begin: 0 unless it is a branch."""
+    """The step at which the tables of a run start: 0 unless it is a branch."""
     return manifest.sessions[0].from_step if manifest.parent and manifest.sessions else 0
 
 
 def world_rules(manifest: Manifest) -> dict[str, pl.Expr]:
-    """Rules on the world and seed of a row."""
+    """Rules for the world and seed of a row."""
     worlds = pl.col("world").is_between(0, len(manifest.seeds) - 1)
     seed = pl.col("world").replace_strict(dict(enumerate(manifest.seeds)), default=None, return_dtype=pl.Int64)
     return {
@@ -41,7 +48,7 @@ def world_rules(manifest: Manifest) -> dict[str, pl.Expr]:
 
 
 def species_rules(manifest: Manifest) -> dict[str, pl.Expr]:
-    """Rules on the species of a row; none where rows do not name one."""
+    """Rules for the species of a row; none if rows have no species."""
     return (
         {"the run has no such species": ~pl.col("species").is_in(manifest.species)} if manifest.columns.several else {}
     )
@@ -68,10 +75,10 @@ def _life_rules(manifest: Manifest) -> dict[str, pl.Expr]:
 
 
 def _family_rules(manifest: Manifest, pairs: Collection[str] | None, complete: bool) -> dict[str, pl.Expr]:
-    """Rules on an agent and its parent. Agents that died before a branch began are only in the parent run."""
+    """Rules for an agent and its parents. Agents that died before a branch started are only in the parent run."""
     child, known = pl.col("parent_id").is_not_null(), pl.col("parent_birth").is_not_null()
     counted, begun = pl.col("counted"), first_step(manifest)
-    # The rows of a killed run may lack one of two parents.
+    # The records of a killed run may lack one of two parents.
     both = known & (pl.col("mate_id").is_null() | pl.col("mate_generation").is_not_null())
     rules = {
         "its parent is itself or a younger agent": pl.col("parent_id") >= pl.col("agent_id"),
@@ -86,7 +93,7 @@ def _family_rules(manifest: Manifest, pairs: Collection[str] | None, complete: b
         | (pl.col("birth_step") <= pl.col("mate_birth")),
     }
     if pairs is not None:
-        # A branch may have changed the rule: who was born before it began had its parents by the old one.
+        # A branch may have changed the mating rule, so agents born before its start follow the old one.
         two, here = pl.col("species").is_in(list(pairs)), pl.col("birth_step") > begun
         rules["has a parent but no second one"] = here & two & child & pl.col("mate_id").is_null()
         rules["has two parents, but its species has one"] = here & ~two & pl.col("mate_id").is_not_null()
@@ -101,7 +108,7 @@ def _family_rules(manifest: Manifest, pairs: Collection[str] | None, complete: b
 
 
 def _with_parents(agents: pl.DataFrame, manifest: Manifest) -> pl.DataFrame:
-    """Each agent with what is known of its parents, and how many agents name it as one."""
+    """Adds to each agent the data of its parents, and the number of agents that list it as a parent."""
     if "species" not in agents.columns:
         agents = agents.with_columns(species=pl.lit(manifest.species[0], pl.String))
     family = agents if "mate_id" in agents.columns else agents.with_columns(mate_id=pl.lit(None, pl.Int64))
@@ -142,7 +149,7 @@ def _cycles(agents: pl.DataFrame) -> Iterator[Finding]:
 
 
 def _gaps(agents: pl.DataFrame, manifest: Manifest) -> Iterator[Finding]:
-    """Ids that are missing, though later ones are recorded."""
+    """Missing IDs, if later ones are recorded."""
     begun = first_step(manifest)
     for world in range(len(manifest.seeds)):
         mine = agents.filter(pl.col("world") == world, (pl.col("birth_step") > begun) | (begun == 0))
@@ -150,7 +157,7 @@ def _gaps(agents: pl.DataFrame, manifest: Manifest) -> Iterator[Finding]:
         if not ids.len():
             continue
         start = 0 if begun == 0 else int(ids[0])
-        # An id may be any number in a damaged file, so only the rows are gone through, not the ids between them.
+        # IDs in a damaged file may be any number, so this loops over rows and not over the IDs between them.
         known = [start - 1, *ids.unique().sort().to_list()]
         missing = known[-1] + 1 - start - (len(known) - 1)
         if missing:

@@ -1,4 +1,4 @@
-"""Checks the table `population`: intervals without gaps, counts that agree with the agents, the energy ledger."""
+"""Checks the table `population`: intervals without gaps, counts that match the agents, and the energy ledger."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -13,15 +13,22 @@ from hedon.check.genealogy import first_step, species_rules, world_rules
 from hedon.record.manifest import Manifest
 
 _BY_CAUSE = {"deaths_starved": "starved", "deaths_eaten": "eaten"}
-"""Counts of deaths, with the cause that those who died of it have; in worlds where there is more than one."""
+"""Columns that count deaths, each with its cause in the table `agents`, in worlds with several causes."""
 _ROUNDING = 8 * 2.0**-53
-"""A step of an agent rounds at most eight sums, each by at most 2^-53 of its largest possible value."""
+"""Largest relative rounding error per step of an agent: at most eight sums, each rounded by at most 2^-53."""
 
 
 def check_population(
     population: pl.DataFrame, agents: pl.DataFrame | None, manifest: Manifest, *, ended: bool
 ) -> Iterator[Finding]:
-    """What is wrong with the intervals of a run."""
+    """Checks the intervals of a run.
+
+    Args:
+        population: Rows of the table `population`.
+        agents: Rows of the table `agents`; None if they are incomplete or faulty.
+        manifest: Manifest of the run.
+        ended: Whether the run has ended.
+    """
     yield from break_rules(population, "population", _keys(population), world_rules(manifest) | species_rules(manifest))
     for world, species in product(range(len(manifest.seeds)), manifest.species):
         here = pl.col("world") == world
@@ -36,7 +43,7 @@ def check_population(
 
 
 def _keys(rows: pl.DataFrame) -> tuple[str, ...]:
-    """What tells the rows of the table apart."""
+    """The columns that identify a row of the table."""
     return ("world", *(("species",) if "species" in rows.columns else ()), "step")
 
 
@@ -48,7 +55,7 @@ def _check_order(rows: pl.DataFrame, world: int, manifest: Manifest, ended: bool
         "the interval has no length": pl.col("steps") <= 0,
     }
     wrong = list(break_rules(rows, "population", _keys(rows), rules))
-    # A branch's first interval counts from its parent's last row.
+    # The first interval of a branch starts at its parent's last row.
     first = start > begun if manifest.parent else start != begun
     gap = {"there is a gap before the interval": pl.when(before.is_null()).then(first).otherwise(start != before)}
     yield from wrong or break_rules(rows, "population", _keys(rows), gap)
@@ -110,7 +117,7 @@ def _count_agents(rows: pl.DataFrame, agents: pl.DataFrame) -> dict[str, pl.Seri
 
 
 def _compared(rows: pl.DataFrame) -> list[str]:
-    """The counts of an interval that follow from the table of agents."""
+    """The counts of an interval that can be computed from the table of agents."""
     return ["births", "deaths", "alive", "agent_steps", *(name for name in _BY_CAUSE if name in rows.columns)]
 
 
@@ -132,11 +139,11 @@ def _check_meals(rows: pl.DataFrame, agents: pl.DataFrame, manifest: Manifest) -
 
 
 def _ledger_rounding(rows: pl.DataFrame) -> NDArray[np.float64]:
-    """Largest ledger error of each interval from rounding; the counters are sums since the beginning."""
+    """Largest ledger error of each interval from rounding; the counters are sums since the start."""
     moving = [*flow_names(rows), "energy_shared"]
     flows = sum(np.cumsum(np.abs(rows[name].to_numpy())) for name in moving) + rows["energy_total"].to_numpy()
     first = rows["step"][0] - rows["steps"][0]
     recorded = rows["step"].to_numpy() - first
-    # Energy flows before the first row of a branch are not recorded; assume the same flow per step.
+    # Energy flows before the first row of a branch are not recorded, so the same flow per step is assumed.
     moved = (flows + rows["energy_total"][0]) * (rows["step"].to_numpy() / recorded)
     return _ROUNDING * (rows["agent_steps"].to_numpy() + rows["alive"].to_numpy() + 1) * moved

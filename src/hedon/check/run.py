@@ -41,7 +41,7 @@ from hedon.record.snapshot import load_snapshot
 
 @dataclass
 class _Folder:
-    """The readable contents of a run's folder, and what was found so far."""
+    """The readable contents of a run's folder, and the results so far."""
 
     path: Path
     findings: list[Finding] = field(default_factory=list)
@@ -49,15 +49,15 @@ class _Folder:
     manifest: Manifest | None = None
     config: Config | None = None
     checkpoints: list[Checkpoint] = field(default_factory=list)
-    """Those that can be used, in the order of steps."""
+    """The usable checkpoints, in the order of steps."""
     tables: dict[str, pl.DataFrame] = field(default_factory=dict)
-    """Rows of `agents` and `population` that can be read."""
+    """The readable rows of `agents` and `population`."""
     whole: bool = True
-    """Whether all parts are there and readable."""
+    """Whether all parts exist and are readable."""
 
     @property
     def driven(self) -> bool:
-        """Whether a program told its agents what to do, so that no command goes on with it."""
+        """Whether a program chose the agents' actions, so that no command can continue the run."""
         return self.config is not None and bool(self.config.driven)
 
     def add(self, findings: Iterator[Finding]) -> int:
@@ -70,19 +70,19 @@ def check_run(path: Path | str) -> CheckResult:
     """Checks a run's folder. Only reads it, and needs no engine.
 
     Args:
-        path: Of the folder; the run may be finished, interrupted, killed or still running.
+        path: Path of the folder; the run may be finished, interrupted, killed or in progress.
 
     Returns:
-        What is wrong, notes, and what can still be used.
+        Faults, notes, and data that are still usable.
 
     Raises:
-        RecordError: It is not the folder of a run.
+        RecordError: The folder does not contain a run.
     """
     path = Path(path)
     require_unicode(path)
     require_plain(path)
     if not holds_run(path):
-        open_run(path)  # raises an error that says what is missing, with a hint at similar names
+        open_run(path)  # raises an error that names what is missing, with a hint to similar names
     folder = _Folder(path)
     _check_manifest(folder)
     _check_config(folder)
@@ -161,7 +161,7 @@ def _check_config(folder: _Folder) -> None:
 
 
 def _is_other(config: Config, manifest: Manifest) -> bool:
-    """Whether a config is not that of a manifest; digests under other schemas are of other settings."""
+    """Whether a config differs from the one in a manifest; digests under different schemas cannot be compared."""
     return manifest.schema == SCHEMA and manifest.config_digest not in (None, digest(config))
 
 
@@ -231,7 +231,7 @@ def _check_tables(folder: _Folder) -> None:
 
 
 def _has_just_begun(folder: _Folder) -> bool:
-    """Whether a run has written nothing yet, or was killed then: the living are written before its first checkpoint."""
+    """Whether a run has written nothing yet, or was killed before it did; its first checkpoint follows the living."""
     running = folder.manifest is not None and folder.manifest.status == "running"
     return running and not checkpoint_paths(folder.path)
 
@@ -246,7 +246,7 @@ def _check_frames(name: str, rows: pl.DataFrame, latest: dict[int, int]) -> Iter
 
 
 def _check_rows(folder: _Folder) -> None:
-    """Compares rows with one another; if parts are missing, checks only each row by itself."""
+    """Compares rows with one another; if parts are missing, checks only single rows."""
     manifest = folder.manifest
     if manifest is None or not folder.tables:
         return
@@ -264,7 +264,7 @@ def _check_rows(folder: _Folder) -> None:
 
 
 def _check_end(folder: _Folder) -> None:
-    """Compares the digests in the manifest, of the records and of the worlds, with the files."""
+    """Compares the digests of records and worlds in the manifest with the files."""
     manifest = folder.manifest
     try:
         load_snapshot(folder.path)

@@ -1,4 +1,4 @@
-"""Checks the parts of the tables: all there, readable, with the right columns, and not changed."""
+"""Checks that the parts of the tables are complete, readable and unchanged, and have the right columns."""
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,7 +15,12 @@ from hedon.record.part import load_part, value_faults
 
 
 def check_digests(folder: Path, parts: Mapping[str, Sequence[str]]) -> Iterator[Finding]:
-    """Compares the parts on disk with their SHA-256 in a checkpoint."""
+    """Compares the parts on disk with their SHA-256 in a checkpoint.
+
+    Args:
+        folder: Folder of the run.
+        parts: SHA-256 of each part in the checkpoint, in order, by table.
+    """
     for table, digests in parts.items():
         for index, digest in enumerate(digests):
             path = part_path(folder, table, index)
@@ -29,7 +34,7 @@ def check_digests(folder: Path, parts: Mapping[str, Sequence[str]]) -> Iterator[
 
 
 def check_numbering(folder: Path, table: str) -> Iterator[Finding]:
-    """Names the parts that are missing between the first and the last."""
+    """Lists the parts that are missing between the first and the last."""
     paths = part_paths(folder, table)
     expected = [part_path(folder, table, index) for index in range(len(paths))]
     if paths != expected:
@@ -40,7 +45,16 @@ def check_numbering(folder: Path, table: str) -> Iterator[Finding]:
 def read_parts(
     folder: Path, table: Table, manifest: Manifest | None
 ) -> Iterator[tuple[str, pl.DataFrame | None, list[Finding]]]:
-    """Each part of a table, then the file of the living: its name, its rows (None if damaged), what is wrong."""
+    """Reads and checks each part of a table, then the file of the living.
+
+    Args:
+        folder: Folder of the run.
+        table: The table to read.
+        manifest: Manifest of the run; None if it cannot be read.
+
+    Yields:
+        The name of a file, its rows (None if damaged), and its faults.
+    """
     paths = part_paths(folder, table.name)
     if table.name == "agents" and (folder / LIVING).exists():
         paths.append(folder / LIVING)
