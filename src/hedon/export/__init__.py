@@ -1,1 +1,1 @@
-"""Takes the records of a run into other tools: tables as files, and pedigrees in the formats of phylogenetics."""
+"""Exports the records of a run to other tools: tables as files, and pedigrees in phylogenetic formats."""

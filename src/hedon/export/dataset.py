@@ -1,4 +1,4 @@
-"""Runs as a dataset to publish: tables in Parquet, configs and manifests, a card that explains them, and checksums."""
+"""Exports runs as a dataset for publication: Parquet tables, configs, manifests, a dataset card, and checksums."""
 
 import hashlib
 import json
@@ -18,7 +18,7 @@ from hedon.report.markdown import escape_markdown, pipe_table
 from hedon.text import brief, count
 
 LICENSE = "cc-by-4.0"
-"""Of records, unless another is given: an identifier of SPDX in lower case, as dataset hubs write it."""
+"""Default license of records: an SPDX identifier in lower case, as on dataset hubs."""
 CARD, SUMS = "README.md", "SHA256SUMS"
 PAPER = (
     "Kanagawa, Y. and Doya, K. (2024). Evolution of Rewards for Food and Motor Action by Simulating Birth and Death. "
@@ -29,21 +29,22 @@ PAPER = (
 def write_dataset(
     runs: Sequence[Run], out: Path, title: str | None = None, license_name: str = LICENSE, *, frames: bool = False
 ) -> list[Path]:
-    """Writes some runs as a dataset into a new folder.
+    """Writes some runs as a dataset to a new folder.
 
     Args:
-        runs: of any configs; their folders have different names.
-        out: the folder.
-        title: of the card; None for one made of the runs' names.
-        license_name: of the dataset.
-        frames: whether the positions of all bodies go in, too.
+        runs: Runs with any configs; the names of their folders must differ.
+        out: The new folder.
+        title: Title of the card; None for one made from the runs' names.
+        license_name: License of the dataset.
+        frames: Whether to include the positions of all bodies.
 
     Returns:
-        The files, the card first: it documents every column, and `SHA256SUMS` has a checksum of every other file.
+        The paths of the files, the card first. The card documents every column, and `SHA256SUMS` has a checksum of
+        every other file.
 
     Raises:
-        ExportError: the folder is there already or cannot be written, names of runs are equal, or there are no frames.
-        RecordError: a part of a table is damaged.
+        ExportError: The folder exists or cannot be written, names of runs are equal, or there are no frames.
+        RecordError: A part of a table is damaged.
     """
     names = [run.path.resolve().name for run in runs]
     for name in names:
@@ -73,7 +74,7 @@ def write_dataset(
 
 
 def _joined(runs: Sequence[Run], names: Sequence[str], table: TableName) -> pl.LazyFrame:
-    """A table of all runs, each row with the name of its run; what a run does not have is null."""
+    """A table of all runs, with the name of its run in each row; columns that a run lacks are null."""
     every = zip(runs, names, strict=True)
     parts = [table_of(run, table).select(pl.lit(name).alias("run"), pl.all()) for run, name in every]
     return pl.concat(parts, how="diagonal")
@@ -82,7 +83,7 @@ def _joined(runs: Sequence[Run], names: Sequence[str], table: TableName) -> pl.L
 def _card(
     runs: Sequence[Run], names: Sequence[str], tables: Sequence[TableName], title: str | None, license_name: str
 ) -> str:
-    """The card: what the records are, how they were made, every column, license and citation."""
+    """The card: a description of the records and how they were made, every column, license and citation."""
     heading = title or f"Runs of hedon: {', '.join(names[:3])}" + (" and others" if len(names) > 3 else "")
     worlds = sum(len(run.manifest.seeds) for run in runs)
     lines = ["---", f"license: {json.dumps(license_name)}", f"pretty_name: {json.dumps(heading)}"]

@@ -1,4 +1,4 @@
-"""How the phylogeny of a world changes: indices of its shape over time, computed by phylotrackpy."""
+"""Indices of the shape of a world's phylogeny over time, computed with phylotrackpy."""
 
 from importlib import import_module
 from typing import Any
@@ -16,20 +16,25 @@ INDICES = {
     "sackin_index": ("sackin_index", ()),
     "mean_depth": ("get_ave_depth", ()),
 }
-"""Columns, the methods of phylotrackpy's `Systematics` that give them, and their arguments."""
+"""Columns, each with the method of phylotrackpy's `Systematics` that computes it, and its arguments."""
 
 
 def index_table(agents: pl.DataFrame, now: int, points: int) -> pl.DataFrame:
-    """Indices of the phylogeny of the living at times evenly apart.
+    """Indices of the phylogeny of the living at evenly spaced times.
 
-    Each agent is a taxon; edges lead from parents to children and have the length 1. Ancestors are kept as long as a
-    descendant lives.
+    Each agent is a taxon; edges lead from parents to children and have length 1. Ancestors are kept as long as a
+    descendant is alive.
+
+    Args:
+        agents: Agents of one world and species, by agent_id, as from `pedigree`.
+        now: Last step [step].
+        points: Number of times.
 
     Returns:
-        step; living; phylogenetic_diversity, the edges of the tree of the living (Faith 1992), families of different
-        founders joined by one edge each; mean_pairwise_distance, edges between two of the living, over pairs with a
-        common ancestor; sackin_index (Shao and Sokal 1990), which grows with the tree and as it gets out of balance;
-        mean_depth, generations since the founders. Null where nobody lives.
+        step; living; phylogenetic_diversity, the number of edges in the tree of the living (Faith 1992), in which
+        families of different founders are joined by one edge each; mean_pairwise_distance, the number of edges between
+        two living agents, over pairs with a common ancestor; sackin_index (Shao and Sokal 1990), which increases with
+        the size and the imbalance of the tree; mean_depth, generations since the founders. Null if no agents are alive.
 
     Raises:
         ExportError: phylotrackpy is not installed, or children have two parents, so that there is no tree.
@@ -47,7 +52,7 @@ def index_table(agents: pl.DataFrame, now: int, points: int) -> pl.DataFrame:
     begun = ended = 0
     rows = []
     for time in times.tolist():
-        # In the order of time, since who is dead cannot be a parent any more; births of a step come before its deaths.
+        # In order of time, since the dead cannot be added as parents; births precede deaths in each step.
         while True:
             birth = tree.birth[born[begun]] if begun < tree.size else ALIVE
             death = tree.death[dead[ended]] if ended < tree.size else ALIVE

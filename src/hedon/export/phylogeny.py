@@ -1,4 +1,4 @@
-"""The pedigree of a world for the tools of phylogenetics: ALife data standard, and Newick."""
+"""Exports the pedigree of a world for phylogenetic tools, in the ALife data standard and in Newick format."""
 
 from typing import NamedTuple
 
@@ -20,7 +20,7 @@ TWO_PARENTS = (
 
 
 class Subtree(NamedTuple):
-    """A part of a tree of the living: its text, and the step of its uppermost fork or tip."""
+    """A part of a tree of the living: its text, and the step of its topmost fork or tip."""
 
     text: str
     top: int
@@ -29,12 +29,17 @@ class Subtree(NamedTuple):
 def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> pl.DataFrame:
     """The agents of one world, by agent_id.
 
+    Args:
+        run: The run.
+        seed: Seed of the world; None if the run has only one.
+        species: The species; None for all.
+
     Returns:
-        The table `agents`; of a branch, those who lived when it began are roots unless their parents did too.
+        The table `agents`. In a branch, agents alive at its start are roots unless their parents were alive too.
 
     Raises:
-        ExportError: there is no such world or species, or it is not said which world; or ancestors are missing.
-        RecordError: a part of the table is damaged.
+        ExportError: The world or species does not exist or is not specified, or ancestors are missing.
+        RecordError: A part of the table is damaged.
     """
     seeds = run.manifest.seeds
     wanted = seeds[0] if seed is None and len(seeds) == 1 else seed
@@ -56,7 +61,7 @@ def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> p
 
 
 def _rooted(agents: pl.DataFrame, begin: int) -> pl.DataFrame:
-    """The agents of a branch without parents who had died when it began [step]."""
+    """The agents of a branch, without parents who died before its start [step]."""
     known = agents["agent_id"].implode()
     roots = (pl.col("birth_step") <= begin) & ~pl.col("parent_id").is_in(known)
     lost = [name for name in ("parent_id", "mate_id") if name in agents.columns]
@@ -64,7 +69,12 @@ def _rooted(agents: pl.DataFrame, begin: int) -> pl.DataFrame:
 
 
 def last_step(run: Run, agents: pl.DataFrame) -> int:
-    """The step up to which a pedigree reaches: the end of its world, or its last event if the run has not ended."""
+    """The last step of a pedigree: the end of its world, or the last event if the run has not ended.
+
+    Args:
+        run: The run.
+        agents: Agents of one world.
+    """
     done = run.manifest.steps_done[run.manifest.seeds.index(agents["seed"][0])]
     events = agents.select(pl.max_horizontal(pl.col("birth_step").max(), pl.col("death_step").max())).item()
     return max(done, events)
@@ -73,9 +83,13 @@ def last_step(run: Run, agents: pl.DataFrame) -> int:
 def alife_table(agents: pl.DataFrame, genes: tuple[str, ...]) -> pl.DataFrame:
     """The pedigree in the ALife data standard for phylogenies (Lalejini et al. 2019).
 
+    Args:
+        agents: Agents of one world and species, by agent_id, as from `pedigree`.
+        genes: Genome columns to include.
+
     Returns:
-        `id`; `ancestor_list`, "[NONE]" for founders, with both parents where there are two; `origin_time` and
-        `destruction_time` [step], "inf" for who lives; then the species, where there are several, and the genes.
+        `id`; `ancestor_list`, "[NONE]" for founders, with both parents if there are two; `origin_time` and
+        `destruction_time` [step], "inf" for the living; then the species, if there are several, and the genes.
     """
     parent = pl.col("parent_id").cast(pl.String).fill_null("NONE")
     if "mate_id" in agents.columns:
@@ -91,14 +105,18 @@ def alife_table(agents: pl.DataFrame, genes: tuple[str, ...]) -> pl.DataFrame:
 
 
 def newick(agents: pl.DataFrame, now: int) -> bytes:
-    """Trees of the living in Newick's format, one on a line for each founder with living descendants.
+    """Trees of the living in Newick format, one line for each founder with living descendants.
 
-    A tip is an agent that lives, called by its agent_id. A fork is a birth: one branch is the child's, the other the
-    parent's further life. Births of whose two branches one has died out are left out. Lengths are in steps, so that all
-    tips of a tree lie at `now`; the length of a root is the time from its founder's birth to the first fork.
+    A tip is a living agent, named by its agent_id. A fork is a birth: one branch belongs to the child, the other is the
+    parent's further life. A birth is omitted if one of its two branches has died out. Lengths are in steps, so all
+    tips of a tree end at `now`; the length of a root is the time from its founder's birth to the first fork.
+
+    Args:
+        agents: Agents of one world and species, by agent_id, as from `pedigree`.
+        now: Step at which the pedigree ends.
 
     Raises:
-        ExportError: children have two parents, so that there is no tree; or nobody lives.
+        ExportError: Children have two parents, so that there is no tree, or no agents are alive.
     """
     tree = require_tree(agents)
     if not tree.alive.any():
@@ -107,7 +125,7 @@ def newick(agents: pl.DataFrame, now: int) -> bytes:
     kept = ancestry(tree, np.flatnonzero(tree.alive))
     found: dict[int, Subtree] = {}
     young: dict[int, list[int]] = {}
-    for i in np.flatnonzero(kept)[::-1].tolist():  # children come after their parents
+    for i in np.flatnonzero(kept)[::-1].tolist():  # children are listed after their parents
         found[i] = _life(tree, i, str(ids[i]), now, young.pop(i, []), found)
         if tree.parent[i] >= 0:
             young.setdefault(int(tree.parent[i]), []).append(i)
@@ -116,10 +134,16 @@ def newick(agents: pl.DataFrame, now: int) -> bytes:
 
 
 def picture(agents: pl.DataFrame, now: int, genes: tuple[str, ...], gene: str | None) -> bytes:
-    """The tree of the living as a picture (PNG), colored by a gene; see `hedon.figure.tree`.
+    """The tree of the living as a PNG picture, colored by a gene; see `hedon.figure.tree`.
+
+    Args:
+        agents: Agents of one world and species, by agent_id, as from `pedigree`.
+        now: Step at which the pedigree ends.
+        genes: Genome columns of the agents.
+        gene: Column that sets the colors; None for the first.
 
     Raises:
-        ExportError: there is no such gene, or children have two parents, so that there is no tree.
+        ExportError: The gene does not exist, or children have two parents, so that there is no tree.
     """
     tree = require_tree(agents)
     known = [name for name in genes if name in agents.columns and agents[name].is_not_null().any()]
@@ -133,15 +157,15 @@ def picture(agents: pl.DataFrame, now: int, genes: tuple[str, ...], gene: str | 
 
 
 def has_two_parents(agents: pl.DataFrame) -> bool:
-    """Whether some children of these have two parents, so that their pedigree is no tree."""
+    """Whether some of these agents have two parents, so that their pedigree is not a tree."""
     return "mate_id" in agents.columns and agents["mate_id"].is_not_null().any()
 
 
 def require_tree(agents: pl.DataFrame) -> Genealogy:
-    """The pedigree of agents who have one parent each.
+    """The pedigree of agents that have one parent each.
 
     Raises:
-        ExportError: children have two parents, so that there is no tree.
+        ExportError: Children have two parents, so that there is no tree.
     """
     if has_two_parents(agents):
         raise ExportError("children of this run have two parents: there is no tree; --format alife has both parents")
@@ -149,7 +173,7 @@ def require_tree(agents: pl.DataFrame) -> Genealogy:
 
 
 def _life(tree: Genealogy, i: int, name: str, now: int, young: list[int], found: dict[int, Subtree]) -> Subtree:
-    """The subtree that begins with the birth of agent `i`; `young` are its children with living descendants."""
+    """The subtree that starts with the birth of agent `i`; `young` are its children with living descendants."""
     rest = Subtree(name, now) if tree.death[i] == ALIVE else None
     for child in sorted(young, key=lambda each: tree.birth[each], reverse=True):
         below, step = found.pop(child), int(tree.birth[child])

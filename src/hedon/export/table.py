@@ -1,4 +1,4 @@
-"""Whole tables of a run as one file."""
+"""Exports whole tables of a run as one file."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -16,30 +16,39 @@ TableFormat = Literal["csv", "parquet", "arrow"]
 
 
 class ExportError(HedonError):
-    """What cannot be exported, or a file that is there already."""
+    """The data cannot be exported, or the file already exists."""
 
 
 def table_of(run: Run, name: TableName) -> pl.LazyFrame:
     """A table of all worlds of a run.
 
+    Args:
+        run: The run.
+        name: Name of the table.
+
     Raises:
-        ExportError: the run has no frames.
-        RecordError: a part of the table is damaged.
+        ExportError: The run has no frames.
+        RecordError: A part of the table is damaged.
     """
     if name == "agents":
         return run.agents().lazy()
     if name == "population":
         return run.population().lazy()
-    if not sum(rows.height for rows in run.frame_parts()):  # reads every part, so that a damaged one is named
+    if not sum(rows.height for rows in run.frame_parts()):  # reads every part, so that errors name damaged ones
         raise ExportError(f"{run.path} has no frames: record them with `hedon run --frames 64`")
     return run.frames()
 
 
 def write_table(table: pl.LazyFrame, file_format: TableFormat, out: Path) -> None:
-    """Writes a table as one file, piece by piece, so that it may be larger than memory.
+    """Writes a table as one file, in pieces, so that it may be larger than memory.
+
+    Args:
+        table: The table.
+        file_format: Format of the file.
+        out: Path of the new file.
 
     Raises:
-        ExportError: the file is there already, or cannot be written.
+        ExportError: The file already exists, or cannot be written.
     """
 
     def write(file: BinaryIO) -> None:
@@ -54,10 +63,14 @@ def write_table(table: pl.LazyFrame, file_format: TableFormat, out: Path) -> Non
 
 
 def write_new(out: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Writes a file that is not there yet, whole or not at all.
+    """Writes a new file atomically.
+
+    Args:
+        out: Path of the new file.
+        write: Writes the content to an open file.
 
     Raises:
-        ExportError: it is there already, or cannot be written.
+        ExportError: The file already exists, or cannot be written.
     """
     if out.exists() or out.is_symlink():
         raise ExportError(f"{brief(str(out))} is there already: choose another file with --out, or remove it")

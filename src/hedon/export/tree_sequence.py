@@ -1,4 +1,4 @@
-"""The pedigree of a world as a tree sequence, for tskit and what reads it."""
+"""Exports the pedigree of a world as a tree sequence, for tskit and compatible tools."""
 
 from typing import Any
 
@@ -10,21 +10,21 @@ from hedon.export.phylogeny import require_tree
 from hedon.export.table import ExportError
 
 LAST_BIRTH = 0.5
-"""How long before the end a birth in the last step is placed [step]: a node must be older than those below it."""
+"""Time before the end at which births in the last step are placed [step]; nodes must be older than their children."""
 
 
 def tree_sequence(agents: pl.DataFrame, genes: tuple[str, ...], now: int) -> Any:
     """The lives of a world as a `tskit.TreeSequence` with one tree.
 
-    A node is a moment of a lineage: the birth of a founder, a birth as the parent lives it, or an agent that lives at
-    the end, which is a sample. Times count back from the end [step]. `simplify()` gives the tree of the living, the one
-    that `newick` writes. Each node belongs to an individual, the agent, whose metadata are its agent_id, the steps of
+    A node is a moment of a lineage: the birth of a founder, a birth in the life of the parent, or an agent alive at
+    the end, which is a sample. Times count back from the end [step]. `simplify()` returns the tree of the living, which
+    `newick` also writes. Each node belongs to an individual, the agent, whose metadata are its agent_id, the steps of
     its birth and death, and its genes.
 
     Args:
-        agents: of one world and species, by agent_id, as `pedigree` gives them.
-        genes: columns that go into the metadata.
-        now: the step at which the pedigree ends.
+        agents: Agents of one world and species, by agent_id, as from `pedigree`.
+        genes: Genome columns to include in the metadata.
+        now: Step at which the pedigree ends.
 
     Raises:
         ExportError: tskit is not installed, or children have two parents, so that there is no tree.
@@ -35,10 +35,10 @@ def tree_sequence(agents: pl.DataFrame, genes: tuple[str, ...], now: int) -> Any
         raise ExportError(f'--format trees needs {error.name}: pip install "hedon[phylogeny]"') from error
     tree = require_tree(agents)
     born = np.flatnonzero(tree.parent >= 0)
-    births = born[np.lexsort((tree.birth[born], tree.parent[born]))]  # of each parent, in the order of time
+    births = born[np.lexsort((tree.birth[born], tree.parent[born]))]  # by parent, in the order of time
     parent, living, roots = tree.parent[births], np.flatnonzero(tree.death == ALIVE), np.flatnonzero(tree.parent < 0)
-    tip, root = len(births), len(births) + len(living)  # where these nodes begin
-    first = np.full(tree.size, -1)  # node of each agent's life
+    tip, root = len(births), len(births) + len(living)  # indices of the first such nodes
+    first = np.full(tree.size, -1)  # first node of each agent's life
     first[living] = tip + np.arange(len(living))
     last = first.copy()
     first[parent[::-1]] = np.arange(len(births))[::-1]
