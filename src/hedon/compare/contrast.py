@@ -1,4 +1,4 @@
-"""Do two conditions differ? Worlds are the units, in pairs if their seeds are equal."""
+"""Do two conditions differ? Worlds are the sample, in pairs if their seeds are equal."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -25,9 +25,9 @@ from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.text import count
 
 SIGNIFICANT_PAIRS = 6
-"""The fewest pairs of which an exchange of signs can have a p value below 0.05: 2 / 2⁶ is 0.03."""
+"""Smallest number of pairs for which a sign-flip test can have a p value below 0.05: 2 / 2⁶ is 0.03."""
 MOST_LISTED = 8
-"""At most this many values of a factor appear in a message."""
+"""Largest number of a factor's values in a message."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,9 +35,9 @@ class Compared:
     """One measure in two conditions.
 
     Attributes:
-        title: what the measure is called.
-        matched: the values that are compared.
-        contrast: how they differ.
+        title: Title of the measure.
+        matched: The values that are compared.
+        contrast: Their difference.
     """
 
     title: str
@@ -48,8 +48,12 @@ class Compared:
 def choose_factor(worlds: WorldTable, by: str | None) -> str:
     """The factor that distinguishes the two conditions.
 
+    Args:
+        worlds: The worlds.
+        by: Factor that the user named; None if there is only one.
+
     Raises:
-        CompareError: There is no such factor, or there are several.
+        CompareError: The factor does not exist, or must be chosen from several.
     """
     known = [each for each in worlds.rows.columns if each != "seed"]
     if by is None and worlds.factors:
@@ -68,10 +72,15 @@ def choose_factor(worlds: WorldTable, by: str | None) -> str:
 
 
 def choose_levels(by: str, every: Iterable[Any], between: str | None) -> tuple[Any, Any]:
-    """Two values of a factor.
+    """The two values of a factor to compare.
+
+    Args:
+        by: The factor.
+        every: All of its values.
+        between: Two values separated by a comma; None if there are only two.
 
     Raises:
-        CompareError: There are no two such values.
+        CompareError: There are not exactly two values, or a value does not exist.
     """
     values = {_written(each): each for each in every if each is not None}
     for asked in [list(values)] if between is None else _halves(between, values):
@@ -99,7 +108,7 @@ def _halves(between: str, values: Mapping[str, Any]) -> list[list[str]]:
 
 
 def _as_written(asked: str, values: Mapping[str, Any]) -> str:
-    """The value as the table writes it: 30 and 3e1 both name 30.0."""
+    """The value as the table writes it; for example, 30 and 3e1 both mean 30.0."""
     for written, value in values.items():
         with suppress(ValueError):
             if isinstance(value, int | float) and not isinstance(value, bool) and float(asked) == value:
@@ -108,10 +117,15 @@ def _as_written(asked: str, values: Mapping[str, Any]) -> str:
 
 
 def comparable(worlds: WorldTable, by: str, levels: tuple[Any, Any]) -> tuple[pl.DataFrame, pl.DataFrame, list[str]]:
-    """The worlds of two conditions, restricted to the settings of all other factors that both have.
+    """The worlds of two conditions, restricted to the combinations of all other factors that both have.
+
+    Args:
+        worlds: The worlds.
+        by: Factor that distinguishes the conditions.
+        levels: Its two values.
 
     Returns:
-        The worlds of each condition, and the other factors in which they differ if they share no setting.
+        The worlds of each condition and, if they share no combination, the other factors in which they differ.
     """
     first, second = (worlds.rows.filter(pl.col(by) == value) for value in levels)
     others = [name for name in worlds.factors if name != by]
@@ -133,7 +147,15 @@ def compare(
     *,
     paired: bool = True,
 ) -> list[Compared]:
-    """Compares two groups of worlds. Worlds of one seed count once, by their mean."""
+    """Compares two groups of worlds. Worlds with the same seed count once, with their mean.
+
+    Args:
+        first: Worlds of the first condition.
+        second: Worlds of the second condition.
+        shown: Columns of the measures to compare, with their titles.
+        factors: Columns of all other factors.
+        paired: Whether to compare worlds of equal seeds in pairs.
+    """
     found = []
     for name, title in shown.items():
         matched = match(first, second, name, factors, paired=paired)
@@ -150,10 +172,17 @@ def compare_answer(
     *,
     paired: bool = True,
 ) -> Answer:
-    """The measures in which two conditions differ.
+    """The comparison of two conditions, measure by measure.
+
+    Args:
+        worlds: The worlds.
+        by: Factor that distinguishes the conditions; None if there is only one.
+        between: Its two values, separated by a comma; None if there are only two.
+        only: Columns of the measures to show; by default the usual ones.
+        paired: Whether to compare worlds of equal seeds in pairs.
 
     Raises:
-        CompareError: There is no such factor, value or column.
+        CompareError: The factor, a value or a column does not exist.
     """
     by = choose_factor(worlds, by)
     levels = choose_levels(by, worlds.planned.get(by) or worlds.rows[by].unique(maintain_order=True), between)
@@ -217,7 +246,7 @@ def _contrasts(
 def _extinct(
     first: pl.DataFrame, second: pl.DataFrame, names: Sequence[str], factors: Sequence[str]
 ) -> list[ResultTable]:
-    """How many worlds of each condition died out, how long they lived, and whether that differs."""
+    """How many worlds of each condition died out, how long they lived, and whether the conditions differ."""
     if "extinct" not in first.columns:
         return []
     pairs = zip(names, (first, second), strict=True)
@@ -234,7 +263,7 @@ def _extinct(
 
 
 def _survival_chance(groups: Sequence[pl.DataFrame], factors: Sequence[str]) -> float:
-    """The p of the log-rank test for the worlds of two conditions."""
+    """The p value of the log-rank test for the worlds of two conditions."""
     both = pl.concat([each.with_columns(first=pl.lit(i == 0)) for i, each in enumerate(groups)], how="diagonal_relaxed")
     lived, ended, first = (both[name].to_numpy() for name in ("survived", "extinct", "first"))
     settings = both.select(pl.struct(factors).rank("dense")).to_series().to_numpy() if factors else np.zeros(len(first))
@@ -242,7 +271,13 @@ def _survival_chance(groups: Sequence[pl.DataFrame], factors: Sequence[str]) -> 
 
 
 def draw_contrasts(found: Sequence[Compared], by: str, names: Sequence[str]) -> Figure:
-    """The size of each effect with its 95 % interval."""
+    """Draws the size of each effect with its 95 % interval.
+
+    Args:
+        found: The compared measures.
+        by: Factor that distinguishes the conditions.
+        names: Names of the two conditions.
+    """
     with styled():
         figure = new_figure(6.4, 1.2 + 0.34 * len(found))
         axes = figure.subplots()

@@ -1,7 +1,7 @@
-"""The error of comparisons."""
+"""The error that comparisons raise."""
 
 from hedon.error import HedonError
 
 
 class CompareError(HedonError):
-    """Worlds that cannot be compared: the message says why, and what can be."""
+    """Worlds cannot be compared. The message gives the reason, and what can be compared."""

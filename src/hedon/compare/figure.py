@@ -1,4 +1,4 @@
-"""The figures of a sweep: how worlds respond to one factor, and to two together."""
+"""The figures of a sweep: how worlds respond to one factor, and to two factors together."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -15,19 +15,26 @@ from hedon.statistic.interval import Interval
 from hedon.statistic.minimum import FOR_INTERVAL
 
 WIDE = 30.0
-"""Ratio of the largest value of a factor to the smallest from which its axis is logarithmic."""
+"""Ratio of the largest to the smallest value of a factor above which its axis is logarithmic."""
 _COLUMNS = 3
 _TICKS = 6
-"""Most numbers below a panel."""
+"""Largest number of tick labels below a panel."""
 _FEW_DECADES = 1000.0
-"""Ratio of the ends of a logarithmic axis below which it has numbers between the powers of ten."""
+"""Ratio of the ends of a logarithmic axis below which it has labels between the powers of ten."""
 _LEVEL, _ASLANT = 30, 8
-"""Most letters of names side by side below a panel, and most names aslant."""
+"""Largest total length of names that are written horizontally below a panel, and largest number of slanted names."""
 _CELL_DIGITS = 3
 
 
 def draw_curves(table: pl.DataFrame, factor: str, shown: Mapping[str, str], *, ranged: bool) -> Figure:
-    """A panel per response: worlds as dots, means as a line, their 95 % intervals as bars, along one factor."""
+    """Draws a panel per response along one factor: worlds as dots, means as a line, their 95 % intervals as bars.
+
+    Args:
+        table: Table of worlds.
+        factor: Column of the factor.
+        shown: Columns of the responses, with their titles.
+        ranged: Whether the factor's values were drawn from a range.
+    """
     with styled():
         rows = -(-len(shown) // _COLUMNS)
         figure = new_figure(9.0, 2.5 * rows)
@@ -43,7 +50,14 @@ def draw_curves(table: pl.DataFrame, factor: str, shown: Mapping[str, str], *, r
 
 
 def draw_map(table: pl.DataFrame, pair: tuple[str, str], name: str, title: str) -> Figure:
-    """A response over two factors: in each cell the mean over worlds, and half the width of its 95 % interval."""
+    """Draws a response over two factors: in each cell the mean over worlds, and half the width of its 95 % interval.
+
+    Args:
+        table: Table of worlds.
+        pair: Columns of the two factors.
+        name: Column of the response.
+        title: Title of the response.
+    """
     right, up = (table[factor].unique().sort().to_list() for factor in pair)
     made = {point.at: point.mean for point in points(table, list(pair), name)}
     means = np.full((len(up), len(right)), np.nan)
@@ -107,7 +121,7 @@ def _draw_curve(axes: Axes, table: pl.DataFrame, factor: str, name: str, made: S
 
 
 def _name_values(axes: Axes, names: Sequence[str]) -> None:
-    """Writes values that are no numbers below an axis, the more aslant the more of them there are."""
+    """Writes non-numeric values below an axis; the more there are, the more they are slanted."""
     level = sum(map(len, names)) <= _LEVEL
     slope = 0 if level else 30 if len(names) <= _ASLANT else 90
     end = (

@@ -1,4 +1,4 @@
-"""Matches the worlds of two conditions: within a seed, and within a setting of all other factors."""
+"""Matches the worlds of two conditions within each seed and each combination of all other factors."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 MOST_UNPAIRED = 0.5
-"""Share of the smaller condition's worlds that may lack a counterpart for pairs to be compared."""
+"""Largest share of the smaller condition's worlds without a counterpart for which pairs are compared."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,10 +18,10 @@ class Matched:
     """The values of one measure in two conditions, one per seed.
 
     Attributes:
-        values: Of the first condition, by seed, shape (worlds,).
-        others: Of the second, shape (worlds,); in pairs, of the same seeds.
+        values: Values of the first condition, by seed, shape (worlds,).
+        others: Values of the second condition, shape (worlds,); if paired, for the same seeds.
         paired: Whether the values are pairs.
-        left_out: Worlds with a value that have no counterpart in the other condition.
+        left_out: Number of worlds with a value but without a counterpart in the other condition.
     """
 
     values: Floats
@@ -31,11 +31,18 @@ class Matched:
 
 
 def match(first: pl.DataFrame, second: pl.DataFrame, name: str, factors: Sequence[str], *, paired: bool) -> Matched:
-    """Matches two conditions, so that nothing but the condition differs between what is compared.
+    """Matches two conditions, so that the compared values differ only in the condition.
 
-    In pairs, a world is compared with the world of the same seed and setting; a seed with several settings counts once,
-    by the mean of its pairs. Otherwise the mean of each setting, both conditions weighted alike, is taken out first:
-    else a setting with more worlds in one condition than in the other would look like a difference.
+    In pairs, a world is compared with the world of the same seed and the same other factors; a seed with several such
+    combinations counts once, with the mean of its pairs. Otherwise the mean of each combination, with equal weight for
+    both conditions, is subtracted first, so that unequal numbers of worlds do not look like a difference.
+
+    Args:
+        first: Worlds of the first condition.
+        second: Worlds of the second condition.
+        name: Column of the measure.
+        factors: Columns of all other factors.
+        paired: Whether to compare pairs.
     """
     one, other = (known_values(table, name, factors) for table in (first, second))
     pairs = one.join(other, on=["seed", *factors], suffix="_other")
@@ -61,11 +68,16 @@ def match(first: pl.DataFrame, second: pl.DataFrame, name: str, factors: Sequenc
 
 
 def known_values(table: pl.DataFrame, name: str, factors: Sequence[str]) -> pl.DataFrame:
-    """The value of each seed and setting that has one; replicates of a seed in one setting count once, by their mean.
+    """The known value of each seed and combination of factors; replicates of a seed with equal factors are averaged.
+
+    Args:
+        table: Worlds.
+        name: Column of the measure.
+        factors: Columns of the factors.
 
     Returns:
         Columns "seed", those of the factors, and "value".
     """
     rows = table.select("seed", *factors, value=pl.col(name).cast(pl.Float64)).fill_nan(None).drop_nulls("value")
-    # In the order of the table, so that sums over worlds are the same each time.
+    # The order of the table is kept, so that sums over worlds are reproducible.
     return rows.group_by("seed", *factors, maintain_order=True).agg(pl.col("value").mean())

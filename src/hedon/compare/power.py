@@ -1,4 +1,4 @@
-"""How many worlds are needed to see an effect, from how much the worlds of a pilot differ."""
+"""How many worlds are needed to find an effect, given the variation among the worlds of a pilot?"""
 
 import math
 from collections.abc import Sequence
@@ -28,20 +28,20 @@ DESIGNS = {
     ALONE: "one condition, against a known number such as 0",
 }
 COUNTS = (5, 10, 20, 50, 100, 200)
-"""Worlds for which the least effect is told where none is given."""
+"""Numbers of worlds for which the smallest detectable effect is listed if no effect is given."""
 _COLORS = (BLUE, VERMILION, GREEN, ORANGE)
 
 
 @dataclass(frozen=True)
 class PilotSpread:
-    """How much worlds differ in a measure.
+    """The variation of a measure among worlds.
 
     Attributes:
-        measure: what it is called.
-        design: one of `DESIGNS`.
-        sd: standard deviation, between the worlds of a condition, or of the differences of pairs.
-        low, high: bounds of its 95 % interval, as if worlds of equal seeds were alike in all conditions.
-        worlds: that it was taken from.
+        measure: Title of the measure.
+        design: One of `DESIGNS`.
+        sd: Standard deviation between the worlds of a condition, or of the differences within pairs.
+        low, high: Bounds of its 95 % interval, as if worlds of equal seeds were identical in all conditions.
+        worlds: Number of worlds on which it is based.
     """
 
     measure: str
@@ -55,7 +55,13 @@ class PilotSpread:
 def spreads(
     pilot: WorldTable, by: str | None = None, between: str | None = None, only: Sequence[str] = ()
 ) -> list[PilotSpread]:
-    """How much the worlds of a pilot differ.
+    """The variation of each measure among the worlds of a pilot.
+
+    Args:
+        pilot: Worlds of the pilot.
+        by: Factor whose values are to be compared; None for none.
+        between: Two values of the factor, separated by a comma.
+        only: Columns of the measures to use; by default the usual ones.
 
     Raises:
         CompareError: There are too few worlds, or the factor does not have two values.
@@ -76,7 +82,7 @@ def spreads(
 
 
 def _require_one_each(table: pl.DataFrame, groups: Sequence[str]) -> None:
-    """Refuses tables in which several worlds of a seed belong to one condition, as far as its columns say."""
+    """Refuses tables in which, according to their columns, several worlds of a seed belong to one condition."""
     repeated = table.group_by(*dict.fromkeys(["seed", *groups])).len().filter(pl.col("len") > 1)
     if repeated.height:
         row = repeated.sort("seed").row(0, named=True)
@@ -88,7 +94,7 @@ def _require_one_each(table: pl.DataFrame, groups: Sequence[str]) -> None:
 
 
 def _changes(pilot: WorldTable, name: str, by: str, between: str | None) -> list[pl.DataFrame]:
-    """The differences between worlds of equal seeds, one table per setting of the other factors."""
+    """The differences between worlds of equal seeds, one table per combination of the other factors."""
     held = [each for each in pilot.factors if each != by]
     levels = choose_levels(by, pilot.rows[by].unique(maintain_order=True), between)
     one, two = (known_values(pilot.rows.filter(pl.col(by) == value), name, held) for value in levels)
@@ -98,10 +104,10 @@ def _changes(pilot: WorldTable, name: str, by: str, between: str | None) -> list
 
 
 def _spread(title: str, design: str, groups: Sequence[pl.DataFrame]) -> list[PilotSpread]:
-    """The standard deviation of the values within groups, pooled; none if it is not known or 0.
+    """The pooled standard deviation of the values within groups; none if it is unknown or 0.
 
-    Worlds of equal seeds can be alike in all groups: then a group more tells nothing new. So the interval counts fewer
-    degrees of freedom than there are seeds.
+    Worlds of equal seeds can be identical in all groups, and further groups then add no information. The interval
+    therefore has fewer degrees of freedom than there are seeds.
     """
     values = [each["value"].to_numpy() for each in groups]
     seeds = len(set[int]().union(*(each["seed"].to_list() for each in groups)))
@@ -121,7 +127,16 @@ def power_answer(
     pilot: str = "",
     cautions: Sequence[str] = (),
 ) -> Answer:
-    """How many worlds are needed, for each measure and design; without effects, what some numbers of worlds see."""
+    """The number of worlds needed for each measure and design, or the effects that some numbers of worlds can find.
+
+    Args:
+        found: Variation of each measure and design.
+        effects: Effects to find, in units of the measure; if empty, the smallest detectable effects are listed.
+        power: Required power.
+        level: Significance level.
+        pilot: Name of the pilot.
+        cautions: Sentences about worlds that are not independent.
+    """
     table = _needed(found, effects, power, level) if effects else _seen(found, power, level)
     tables = [replace(table, note=" ".join([table.note, *cautions]))]
     content = {"pilot": pilot, "power": power, "level": level, "effects": list(effects)}
@@ -137,7 +152,7 @@ def _needed(found: Sequence[PilotSpread], effects: Sequence[float], power: float
     rows = []
     for each in found:
         for effect in effects:
-            # A pilot knows its spread only so well: both bounds of it are answered too.
+            # The standard deviation of a pilot is uncertain, so the answer includes both of its bounds.
             needed, low, high = (
                 worlds_needed(effect / sd, _TESTED[each.design], power, level) for sd in (each.sd, each.low, each.high)
             )
@@ -165,7 +180,14 @@ def _meanings(found: Sequence[PilotSpread]) -> str:
 
 
 def draw_power(found: Sequence[PilotSpread], effects: Sequence[float], power: float, level: float) -> Figure:
-    """The chance to see the first effect over the number of worlds; by the standard deviation, where none is given."""
+    """Draws the power to find an effect against the number of worlds.
+
+    Args:
+        found: Variation of each measure and design.
+        effects: Effects to find, of which the first is drawn; half a standard deviation if empty.
+        power: Required power.
+        level: Significance level.
+    """
     own = [each for each in found if each.measure == found[0].measure]
     effect = effects[0] if effects else 0.5 * own[0].sd
     most = [worlds_needed(effect / each.sd, _TESTED[each.design], power, level) or 1000 for each in own]

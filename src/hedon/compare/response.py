@@ -1,4 +1,4 @@
-"""The measures that a comparison shows, and their means over worlds of equal settings."""
+"""The measures that a comparison shows, and their means over worlds of the same condition."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -14,16 +14,16 @@ from hedon.measure.catalogue import column_measure
 from hedon.statistic.interval import ANY, Interval, mean_interval, share_interval
 
 BINS = 8
-"""Most groups of neighboring values for which means are shown, where every world has a value of its own."""
+"""Largest number of groups of neighboring values for which means are shown, if every world has its own value."""
 
 
 @dataclass(frozen=True)
 class Point:
-    """Worlds of equal or neighboring settings.
+    """The mean response of worlds with equal or neighboring values of some factors.
 
     Attributes:
-        at: values of the factors; of neighbors, the mean.
-        mean: of the response, with its interval of 95 %.
+        at: Values of the factors; for neighboring values, their mean.
+        mean: Mean of the response, with its 95 % interval.
     """
 
     at: tuple[float | str, ...]
@@ -36,13 +36,13 @@ def responses(
     """The columns to show, with their titles.
 
     Args:
-        table: Of worlds.
+        table: Table of worlds.
         asked: Columns to show; by default the usual ones.
         factors: Columns that distinguish conditions.
-        titles: Of measures that configs add, by name.
+        titles: Titles of measures that configs add, by name.
 
     Raises:
-        CompareError: One is not a column of numbers.
+        CompareError: One of them is not a column of numbers.
     """
     fit = [name for name, kind in table.schema.items() if kind.is_numeric() or kind == pl.Boolean]
     fit = [name for name in fit if name not in (*KEYS, *factors)]
@@ -57,7 +57,13 @@ def responses(
 
 
 def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[Point]:
-    """The mean of a response at each combination of some factors' values, over all else that varies."""
+    """The mean of a response at each combination of some factors' values, averaged over all other factors.
+
+    Args:
+        table: Table of worlds.
+        factors: Columns of the factors.
+        response: Column of the response.
+    """
     made = []
     if not factors:
         return [Point((), _response_interval(table, response))]
@@ -67,7 +73,13 @@ def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[P
 
 
 def binned(table: pl.DataFrame, factor: str, response: str) -> list[Point]:
-    """Means over groups of neighbors along a factor that was drawn from a range."""
+    """Means over groups of neighboring values of a factor that was drawn from a range.
+
+    Args:
+        table: Table of worlds.
+        factor: Column of the factor.
+        response: Column of the response.
+    """
     rows = table.sort(factor)
     count = min(BINS, max(1, rows.height // 4))
     edges = [round(i * rows.height / count) for i in range(count + 1)]
@@ -76,7 +88,7 @@ def binned(table: pl.DataFrame, factor: str, response: str) -> list[Point]:
 
 
 def _response_interval(table: pl.DataFrame, response: str) -> Interval:
-    """Mean over worlds: Student's t interval; of yes and no a share, with Jeffreys' interval."""
+    """The mean over worlds with Student's t interval, or, for yes or no, the share with Jeffreys' interval."""
     known = table[response].drop_nulls()
     if known.dtype != pl.Boolean:
         measure = column_measure(response)

@@ -1,4 +1,4 @@
-"""Where the worlds of a comparison come from: runs, a sweep, an assay, a study, or a table in a file."""
+"""Reads the worlds of a comparison from runs, a sweep, an assay, a study, or a table in a file."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ from hedon.record.reader import open_run
 from hedon.report.answer import CAUTIONS, FACTORS, WORLDS
 
 SOURCE, CONDITION = "source", "condition"
-"""Factors of worlds from two sources, and of runs with several configs."""
+"""Names of the factors for worlds from two sources, and for runs with several configs."""
 KINDS = "runs, a sweep, an assay, a study, or a table (.csv, .parquet)"
 
 
@@ -33,9 +33,9 @@ class WorldTable:
         rows: A row per world: its seed, its value of each factor, and its measures.
         factors: Columns that distinguish conditions.
         steps: The length of each world, if all have the same [step].
-        planned: The values of each factor in the order of a sweep's plan, including those without a world so far.
+        planned: The values of each factor in the order of a sweep's plan, including values without worlds so far.
         cautions: Sentences about worlds that are not independent.
-        titles: Of measures that configs add, by name.
+        titles: Titles of measures that configs add, by name.
     """
 
     name: str
@@ -51,8 +51,8 @@ def read_table(source: str) -> WorldTable:
     """Reads the worlds of one source.
 
     Raises:
-        CompareError: It is none of these, or holds no world.
-        RecordError, ConfigError, EnsembleError: It cannot be read.
+        CompareError: The source is of no known kind, or contains no world.
+        RecordError, ConfigError, EnsembleError: The source cannot be read.
     """
     runs = _run_folders(source)
     return _runs_table(source, _records(runs), _cautions(runs)) if runs else _other_table(source)
@@ -62,8 +62,9 @@ def read_both(sources: tuple[str, str]) -> WorldTable:
     """Reads the worlds of two sources as one table with the factor "source"; runs are cut to a common length.
 
     Raises:
-        CompareError: They are the same, one holds several conditions of runs, or their worlds differ in length.
-        RecordError, ConfigError, EnsembleError: One cannot be read.
+        CompareError: The sources are the same, one contains runs of several conditions, or their worlds differ in
+            length.
+        RecordError, ConfigError, EnsembleError: One of the sources cannot be read.
     """
     if sources[0] == sources[1]:
         raise CompareError(f"{sources[0]} is named twice: name two sources, or --by FACTOR within one")
@@ -104,7 +105,7 @@ def read_both(sources: tuple[str, str]) -> WorldTable:
 
 
 def _run_folders(source: str) -> list[Path]:
-    """The run that a folder is, or the runs that it holds; none if it is a sweep, an assay, a study, or no folder."""
+    """The folder itself if it is a run, or the runs in it; none for a sweep, an assay, a study, or no folder."""
     folder = Path(source)
     if "://" in source or not folder.is_dir():
         return []
@@ -129,7 +130,7 @@ def _cautions(folders: Sequence[Path]) -> tuple[str, ...]:
 
 
 def _runs_table(source: str, records: Sequence[WorldRecord], cautions: tuple[str, ...]) -> WorldTable:
-    """The worlds of some runs, up to the step that all of them were planned to reach."""
+    """The worlds of some runs, cut at the step that all of them were planned to reach."""
     end = min(world.end_step for world in records)
     if end < 1:
         raise CompareError(f"{source}: has no step yet at which the records know all agents of every world")

@@ -19,22 +19,22 @@ from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.text import count
 
 MOST_CELLS = 400
-"""Most cells of a map, and most settings of the page's table."""
+"""Largest number of cells in a map, and of conditions in the page's table."""
 
 
 def sweep_answer(
     plan: SweepPlan, table: pl.DataFrame, only: Sequence[str] = (), titles: Mapping[str, str] | None = None
 ) -> Answer:
-    """Response curves for each factor of a sweep, maps for each two that are crossed, and a table of every response.
+    """Response curves for each factor of a sweep, maps for each pair of crossed factors, and a table of all responses.
 
     Args:
-        plan: Of the sweep.
-        table: Of its worlds so far.
+        plan: Plan of the sweep.
+        table: Table of its worlds so far.
         only: Columns of the table to show; by default the usual ones.
-        titles: Of measures that its configs add, by name.
+        titles: Titles of measures that its configs add, by name.
 
     Raises:
-        CompareError: There is no world yet, or a column is not one of numbers.
+        CompareError: There is no world yet, or a column does not contain numbers.
     """
     if table.is_empty():
         raise CompareError("no batch of the sweep is done yet: there is nothing to report")
@@ -60,7 +60,7 @@ def sweep_answer(
 
 
 def _responses_table(plan: SweepPlan, table: pl.DataFrame, shown: Mapping[str, str]) -> ResultTable:
-    """Every mean with its interval, a row per setting and measure, for the file."""
+    """Every mean with its interval, a row per condition and measure, for the file."""
     factors = list(plan.factors)
     rows = [
         {**dict(zip(factors, point.at, strict=True)), "measure": name, **vars(point.mean)}
@@ -81,7 +81,7 @@ def _crossed(table: pl.DataFrame, factors: Sequence[str]) -> list[tuple[str, str
 
 
 def _alone(table: pl.DataFrame) -> str:
-    """In how many worlds each of several species died out while others live on."""
+    """The number of worlds in which each of several species died out while others survived."""
     gone = {name.removesuffix(".extinct"): table[name] for name in table.columns if name.endswith(".extinct")}
     counts = {species: int((column & ~table["extinct"]).sum()) for species, column in gone.items()}
     return "".join(f", {species} alone in {count}" for species, count in counts.items())
@@ -94,7 +94,15 @@ def settings_table(
     most: int = MOST_CELLS,
     titles: Mapping[str, str] | None = None,
 ) -> ResultTable:
-    """A row per setting: its worlds, and the mean and interval of each response."""
+    """A table with a row per condition: its worlds, and the mean and interval of each response.
+
+    Args:
+        plan: Plan of the sweep.
+        table: Table of its worlds so far.
+        shown: Columns to show, with their titles; None for the usual ones.
+        most: Largest number of rows.
+        titles: Titles of measures that its configs add, by name.
+    """
     if table.is_empty():
         return make_table("sweep", f"Sweep {plan.name}: no world yet", [])
     shown, factors = shown or responses(table, (), plan.factors, titles), list(plan.factors)
