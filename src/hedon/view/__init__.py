@@ -1,1 +1,1 @@
-"""Watch a run, or a live world, in a web page: what the page is told, the server, and the static site."""
+"""Shows a run or a live world in a web page: the data of the page, the server, and the static site."""

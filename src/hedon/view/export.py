@@ -1,4 +1,4 @@
-"""Writes the page as a static site, with the records that it needs, for any web server."""
+"""Writes the page and the records that it needs as a static site, for any web server."""
 
 import shutil
 from collections.abc import Mapping
@@ -11,11 +11,16 @@ from hedon.view.page import ViewError, page_files, to_json
 def export(folder: Path, data: Mapping[str, Any], records: Mapping[str, Path]) -> int:
     """Writes a site.
 
+    Args:
+        folder: Folder of the site.
+        data: Data of the page, by name.
+        records: Files that the page may read, by name.
+
     Returns:
-        The bytes written.
+        Number of bytes written.
 
     Raises:
-        ViewError: The folder holds something else already.
+        ViewError: The folder already contains something else.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ViewError(f"{folder} is not empty: choose a new folder, or remove what is in it first")

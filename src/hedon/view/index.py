@@ -1,4 +1,4 @@
-"""What the page is told about a run: its layout, and which files hold its rows."""
+"""The page's description of a run: its layout, and the files that contain its rows."""
 
 from pathlib import Path
 from typing import Any
@@ -17,11 +17,11 @@ from hedon.record.schema import run_tables
 from hedon.view.layout import describe
 
 Span = tuple[int, int] | None
-"""First and last step of a world in a part of the frames; None where it has no frame there."""
+"""First and last step of a world in a part of the frames; None if the part has no frame of it."""
 
 
 class RunIndex:
-    """Describes one run, again and again while it goes on. Parts that have been looked into are not read again."""
+    """Describes one run, repeatedly while it is in progress. Parts that were read before are not read again."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -29,17 +29,17 @@ class RunIndex:
         open_run(folder)
 
     def describe(self) -> dict[str, Any]:
-        """The run as it is now.
+        """Describes the current state of the run.
 
         Returns:
-            `name`, `status`, `seeds`, `steps` (done, per world), `extinct` (step or None, per world), `frames` (steps
-            between two), `digests`, `obstacles` (corners of each, per world), `layout`, `settings` (`base`, `changed`
-            and `all`, as texts), and `files`: for each table its parts, each with `file` (relative to the run), `bytes`
-            and, for frames, `worlds`: first and last step of each world there, or None; or `damaged` where it cannot
-            be read.
+            `name`, `status`, `seeds`, `steps` (completed, per world), `extinct` (step or None, per world), `frames`
+            (steps between two), `digests`, `obstacles` (corners of each, per world), `layout`, `settings` (`base`,
+            `changed` and `all`, as texts), and `files`: for each table its parts, each with `file` (relative to the
+            run), `bytes` and, for frames, `worlds` (first and last step of each world in the part, or None); or
+            `damaged` if the part cannot be read.
 
         Raises:
-            RecordError: It is not a run, or it holds a symbolic link.
+            RecordError: The folder is not a run, or contains a symbolic link.
         """
         run = open_run(self.folder)
         manifest = run.manifest
@@ -61,13 +61,13 @@ class RunIndex:
         }
 
     def damaged(self) -> list[str]:
-        """The files of tables that cannot be used, by the names that the page asks for."""
+        """The files of tables that cannot be used, by the names that the page requests."""
         run = open_run(self.folder)
         frames = [part["file"] for part in self._parts(run, "frames") if part.get("damaged")]
         return [*(path.relative_to(run.path).as_posix() for path in run.damaged_parts()), *frames]
 
     def files(self) -> dict[str, Path]:
-        """The files that the page may read, by the name that it asks for: nothing else of the run is served."""
+        """The files that the page may read, by the name that it requests; no other file of the run is served."""
         run = open_run(self.folder)
         return {part["file"]: run.path / part["file"] for table in TABLE_FOLDERS for part in self._parts(run, table)}
 
@@ -85,7 +85,7 @@ class RunIndex:
         return parts
 
     def _frame_spans(self, run: Run, path: Path, size: int) -> list[Span] | None:
-        """The steps of each world in a part of the frames; None where it is damaged."""
+        """The steps of each world in a part of the frames; None if the part is damaged."""
         key = (path.name, size)
         if key not in self._spans:
             try:
@@ -102,7 +102,7 @@ def _spans(rows: pl.DataFrame, run: Run) -> list[Span]:
 
 
 def _settings(config: Config) -> dict[str, Any]:
-    """The settings of a run as texts: of which preset, what differs from it, and all of them with their meanings."""
+    """The settings of a run as text: its preset, the differences from it, and all settings with their meanings."""
     return {
         "base": f"{config.preset} ({config.fidelity})",
         "changed": [[path, _said(new), _said(old)] for path, old, new in changed_settings(config)],

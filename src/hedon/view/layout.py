@@ -1,7 +1,7 @@
-"""What a world consists of, in the words that the page understands: the only place of the viewer that knows settings.
+"""Describes a world in the terms of the page. No other part of the viewer depends on settings.
 
-The page knows species, types that senses tell apart, foods, genes, rays and walls. It draws and names whatever this
-description lists.
+The page's terms are species, types that senses distinguish, foods, genes, rays and walls. The page draws and labels
+everything that the description lists.
 """
 
 from typing import Any
@@ -20,24 +20,24 @@ def describe(config: Config) -> dict[str, Any]:
     """The layout of a world.
 
     Returns:
-        `species`: of each its name, color, capacity, radius [u], mouth_degrees (on each side of its middle),
+        `species`: for each its name, color, capacity, radius [u], mouth_degrees (on each side of its middle),
         mouth_center_degrees, rays (count, spread_degrees on each side of the heading, length [u]), sees (indices into
         `types`, by channel), noses (count, degrees between the heading and each of two, decay [1/u] of smell with
         distance), smells (indices into `types`, by channel), sets (numbers that genes multiply by 10^gene: place, the
         path of the setting; gene, an index into `genes`; low and high, its limits), genes (indices into `genes`, in
         genome order), laws (by gene, mean and sd of the founders; law, scale, df and probability of the noise that a
-        birth adds; and the limit), mating (how many parents a child has), reward (see `_reward`), stores (name and
-        capacity of each, energy first) and observed (name, unit, scale and meaning of what it observes beside rays and
-        touch);
-        `types`: names that senses tell apart: the species, the foods, walls, and obstacles where there are any;
+        birth adds; and the limit), mating (number of parents of a child), reward (see `_reward`), stores (name and
+        capacity of each, energy first) and observed (name, unit, scale and meaning of each observation other than rays
+        and touch);
+        `types`: names that senses distinguish: the species, the foods, walls and, if there are any, obstacles;
         `foods`: name, radius [u], energy and color of each;
-        `genes`: of all species, each once: name, role (as `Gene.role`), input (what it rewards, "" for none), title in
-        plain words, unit and color;
+        `genes`: genes of all species, each once: name, role (as `Gene.role`), input (what it rewards, "" for none),
+        title in plain words, unit and color;
         `meals`: what an agent may eat, in the order in which the engine counts it;
-        `obstacle_corners`: of each obstacle, 0 where there are none; `obstacle_color`;
-        `arena`: width, height [u] and walls (ax, ay, bx, by) [u]; `window`: steps between two times of learning;
-        `energy_capacity`: most energy of an agent; `mutation_noise`, as the setting; `founders`: whether they come from
-        a table.
+        `obstacle_corners`: number of corners of each obstacle, 0 without obstacles; `obstacle_color`;
+        `arena`: width, height [u] and walls (ax, ay, bx, by) [u]; `window`: steps between two updates of the network;
+        `energy_capacity`: largest energy of an agent; `mutation_noise`, as the setting; `founders`: whether they come
+        from a table.
     """
     made = layouts(config)
     colors = meal_colors(config)
@@ -122,10 +122,10 @@ def _law(gene: Gene) -> dict[str, Any]:
 
 
 def _reward(species: SpeciesConfig, layout: SpeciesLayout, columns: tuple[str, ...]) -> dict[str, Any]:
-    """What a life's reward is made of, as far as its meals and its genes tell.
+    """The parts of a life's reward that follow from its meals and genes.
 
     Returns:
-        `meals`: the terms of which a life has had meals · coef · gene, each with meal (index into the `meals` of the
+        `meals`: the terms that contribute meals · coef · gene, each with meal (index into the `meals` of the
         layout), gene (index into its `genes`) and coef; `rest`: the names of all other terms.
     """
     told = species.reward.family == "linear" and not species.reward.rule

@@ -1,4 +1,4 @@
-"""What the page needs for a live world: the engine's text, the layout, and every setting that can be changed."""
+"""The data that the page needs for a live world: the engine's text, the layout, and all adjustable settings."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,14 +17,18 @@ from hedon.view.layout import describe
 from hedon.view.page import ViewError
 
 BEGINNING = (".initial", ".initial_count", ".initial_mean", ".initial_sd", ".at_zero", ".count")
-"""Ends of the paths of settings that matter when a world begins, or that decide what is recorded."""
+"""Endings of paths of settings that take effect only when a world starts, or that determine what is recorded."""
 
 
 def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, Any]]:
-    """What `live_world` gives for a preset or file, and for all presets after it.
+    """The results of `live_world` for a preset or file, followed by all presets.
+
+    Args:
+        first: The preset or file; empty for none.
+        fidelity: Its fidelity; None for the default.
 
     Raises:
-        ConfigError: There is no such preset or file, or something in it is wrong.
+        ConfigError: The preset or file does not exist, or is invalid.
         ViewError: The world has a rule in Python.
     """
     sources = [*([first] if first else []), *(name for name in PRESETS if name != first)]
@@ -32,12 +36,16 @@ def live_worlds(first: str = "", fidelity: str | None = None) -> list[dict[str, 
 
 
 def live_world(config: Config, source: str) -> dict[str, Any]:
-    """One world that the page can make.
+    """The data of one world that the page can simulate.
+
+    Args:
+        config: Settings of the world.
+        source: The preset or file, as in `hedon run SOURCE`.
 
     Returns:
-        `name`; `description`; `source`, as in `hedon run SOURCE`; `fidelity`; `toml`, the whole config if no preset is
-        it, else ""; `layout`, as `describe` gives it; `text` for the engine, for seed 1; `settings`, each as `_setting`
-        gives it.
+        `name`; `description`; `source`, as in `hedon run SOURCE`; `fidelity`; `toml`, the whole config if it is not a
+        preset, otherwise ""; `layout`, from `describe`; `text` for the engine, for seed 1; `settings`, each from
+        `_setting`.
 
     Raises:
         ViewError: The world has a rule in Python.
@@ -61,6 +69,10 @@ def live_world(config: Config, source: str) -> dict[str, Any]:
 def require_live(config: Config, source: str) -> None:
     """Refuses a world that the page cannot simulate.
 
+    Args:
+        config: Settings of the world.
+        source: The preset or file, for the error message.
+
     Raises:
         ViewError: The world has a rule in Python.
     """
@@ -78,7 +90,7 @@ def _origin(config: Config) -> str:
 
 
 def _settings(config: Config) -> Iterator[dict[str, Any]]:
-    """The numbers and choices that the engine gets as they are, with their schema."""
+    """The numbers and choices that the engine receives unchanged, with their schema."""
     rows, reached = (row for row in leaves(config) if changes_worlds(row[0])), engine_paths(config)
     for (path, setting, value), shown in zip(rows, flatten(config), strict=True):
         single = setting.choices or setting.type in (int, float)
@@ -87,8 +99,8 @@ def _settings(config: Config) -> Iterator[dict[str, Any]]:
 
 
 def _setting(path: str, engine: list[str], setting: Setting, value: Any) -> dict[str, Any]:
-    """One setting: its path here and those in the engine, its value, what `docs/config.md` says of it, and whether a
-    world that has begun can go on with another value."""
+    """One setting: its path in the config and its paths in the engine, its value, its description in `docs/config.md`,
+    and whether it can be changed in a running world."""
     limits = setting.doc.range
     return {
         "path": path,

@@ -1,4 +1,4 @@
-"""The files of the page: what `make viewer` built, and what it is told when it opens."""
+"""The files of the web page that `make viewer` builds, and the data that it loads."""
 
 import json
 from importlib.resources import files
@@ -19,11 +19,11 @@ CONTENT_TYPES = {
 
 
 class ViewError(HedonError):
-    """A run that cannot be shown, or a place that a page cannot be written to."""
+    """A run cannot be shown, or a page cannot be written."""
 
 
 def page_files() -> dict[str, Path]:
-    """Every file of the built page by the name that a browser asks for.
+    """Every file of the built page, by the name that a browser requests.
 
     Raises:
         ViewError: The page has not been built.
@@ -35,5 +35,5 @@ def page_files() -> dict[str, Path]:
 
 
 def to_json(data: Any) -> bytes:
-    """Data for the page; NaN is refused, since no browser reads it."""
+    """Data for the page as JSON; NaN is refused, since browsers cannot parse it."""
     return json.dumps(data, allow_nan=False, separators=(",", ":")).encode()

@@ -1,7 +1,7 @@
-"""The local server of `hedon view`: this machine only, reading only, and only what the page needs.
+"""The local server of `hedon view`: read-only, for this machine, and limited to the files that the page needs.
 
-Every link begins with a random token, so that other programs and pages that know the port get nothing. The server knows
-a list of names, and gives the file or data behind a name; it never makes a path out of a request.
+Every link starts with a random token, so that other programs and pages that know the port get nothing. The server has
+a list of names, and returns the file or data for a name; it never builds a path from a request.
 """
 
 import secrets
@@ -31,7 +31,7 @@ HEADERS = {
 }
 
 Data = Mapping[str, Callable[[], Any]]
-"""What the page is told, by name: called at each request, since a run may go on."""
+"""Functions that return the data of the page, by name; called at each request, since a run may be in progress."""
 Files = Callable[[], Mapping[str, Path]]
 """The records that the page may read, by name."""
 
@@ -40,9 +40,9 @@ class Server(ThreadingHTTPServer):
     """Serves the page on a free port of this machine.
 
     Args:
-        data: What the page is told, as `data/<name>.json`.
-        records: The records that it may read, as `data/run/<name>`.
-        port: 0 for any free one.
+        data: Data of the page, served as `data/<name>.json`.
+        records: Records that the page may read, served as `data/run/<name>`.
+        port: Port to use; 0 for any free one.
     """
 
     daemon_threads = True
@@ -57,11 +57,11 @@ class Server(ThreadingHTTPServer):
 
     @property
     def link(self) -> str:
-        """Where the page is."""
+        """The address of the page."""
         return f"http://{LOOPBACK}:{self.server_port}/{self.token}/"
 
     def find(self, path: str) -> tuple[str, bytes] | None:
-        """The type and content behind the path of a link, or None: a wrong token and a wrong name look the same."""
+        """The type and content for the path of a link; None for a wrong token or a wrong name alike."""
         token, slash, name = path.removeprefix("/").partition("/")
         if not slash or not secrets.compare_digest(token.encode(), self.token.encode()):
             return None
@@ -88,7 +88,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.do_GET()
 
     def do_GET(self) -> None:
-        # A page elsewhere could let a name of its own lead to this machine; then the host is that name.
+        # Another site could make its own name resolve to this machine (DNS rebinding); the host is then that name.
         server = cast(Server, self.server)
         if self.headers.get("Host") not in server.hosts:
             return self._answer(HTTPStatus.FORBIDDEN, "text/plain", b"wrong host\n")
@@ -105,12 +105,12 @@ class _Handler(BaseHTTPRequestHandler):
         return self._answer(HTTPStatus.OK, *found)
 
     def handle(self) -> None:
-        """Answers until the page hangs up, also in the midst of an answer, as it does when it is closed."""
+        """Answers until the page closes the connection, which it may do in the middle of an answer."""
         with suppress(ConnectionError, TimeoutError):
             super().handle()
 
     def finish(self) -> None:
-        with suppress(ConnectionError, ValueError):  # what was not sent yet stays unsent
+        with suppress(ConnectionError, ValueError):  # unsent data are dropped
             super().finish()
 
     def _answer(self, status: HTTPStatus, content_type: str, content: bytes) -> None:
@@ -122,4 +122,4 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(content)
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002
-        """Prints nothing: a terminal is for people."""
+        """Logs nothing, to keep the terminal readable."""

@@ -1,4 +1,4 @@
-"""Writes the article as one file that any browser opens, also without a server."""
+"""Writes the article as one file that any browser can open without a server."""
 
 import base64
 import gzip
@@ -23,18 +23,18 @@ HELD = (
     "hedon.wasm",
     "hero.gz",
 )
-"""What the page would ask a server for, besides the worlds of the scenes. `single.js` gives each an address."""
+"""Files that the page would request from a server, besides the worlds of scenes. `single.js` gives each an address."""
 
 
 def write_single(path: Path, told: Mapping[str, Any]) -> int:
-    """Writes the article with all that it needs into a file, over one that is there.
+    """Writes the article with everything that it needs to one file, replacing an existing one.
 
     Args:
-        path: The file.
-        told: What `story()` gives.
+        path: Path of the file.
+        told: The data from `story()`.
 
     Returns:
-        The bytes written.
+        Number of bytes written.
 
     Raises:
         RecordError: The file cannot be written.
@@ -50,7 +50,7 @@ def write_single(path: Path, told: Mapping[str, Any]) -> int:
         (r'(?<=http-equiv="Content-Security-Policy")\s+content="[^"]*"', f' content="{POLICY}"'),
         (r'<script type="module"[^>]*></script>\s*', ""),
         (r'<link rel="stylesheet"[^>]*>', f"<style>{style}</style>"),
-        (r'\s*<meta property="og:image"[^>]*>', ""),  # which must be an address
+        (r'\s*<meta property="og:image"[^>]*>', ""),  # needs a web address, which the file lacks
         (r'(?<=src=")[^"]*hero\.jpg', picture),
         (r"(?=</body>)", f"{parts}\n<script>{begin}</script>\n"),
     ):
@@ -62,7 +62,7 @@ def write_single(path: Path, told: Mapping[str, Any]) -> int:
 
 
 def _held(name: str, content: bytes) -> str:
-    """A file as text of the page."""
+    """A file as text within the page."""
     kind = CONTENT_TYPES.get(Path(name).suffix, "application/octet-stream").partition(";")[0]
     packed = content if name.endswith(".gz") else gzip.compress(content, 9, mtime=0)
     text = base64.b64encode(packed).decode()

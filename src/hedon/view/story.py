@@ -1,4 +1,4 @@
-"""What the article of `hedon view --story` is told: the world of each scene, whose config is a file in `scene/`."""
+"""The data of the article of `hedon view --story`: the world of each scene, whose config is a file in `scene/`."""
 
 from importlib.resources import files
 from pathlib import Path
@@ -16,6 +16,6 @@ def story() -> dict[str, Any]:
     """The worlds of the article's scenes.
 
     Returns:
-        `worlds`: by the name of the scene's file, what `live_world` gives; each runs with `hedon run FILE` too.
+        `worlds`: the result of `live_world` for each scene's file, by its name; `hedon run FILE` also runs the file.
     """
     return {"worlds": {path.stem: live_world(load_config(path), str(path)) for path in sorted(SCENES.glob("*.toml"))}}
