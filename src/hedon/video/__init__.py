@@ -1,1 +1,1 @@
-"""A run's frames as a video: moments of a world, and the program that encodes their pictures."""
+"""Makes videos from the frames of a run: moments of a world, and the program that encodes their pictures."""

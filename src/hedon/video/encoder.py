@@ -1,4 +1,4 @@
-"""Hands pictures to ffmpeg, one by one, which makes a video of them."""
+"""Passes pictures one by one to ffmpeg, which encodes them as a video."""
 
 import os
 import secrets
@@ -15,17 +15,17 @@ from hedon.video.error import VideoError
 
 FORMATS = {
     ".mp4": ("-c:v", "libx264", "-preset", "medium", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart"),
-    # Each picture has a palette of its own: one for all would need all of them at once.
+    # Each picture has its own palette, since a common one would require all pictures at once.
     ".gif": ("-vf", "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=none"),
 }
-"""What ffmpeg is told, by the ending of the file."""
+"""Arguments for ffmpeg, by suffix of the file."""
 
 
 def find_ffmpeg() -> str:
-    """The path of the program.
+    """The path of ffmpeg.
 
     Raises:
-        VideoError: it is not installed.
+        VideoError: ffmpeg is not installed.
     """
     try:
         return import_module("imageio_ffmpeg").get_ffmpeg_exe()
@@ -34,10 +34,10 @@ def find_ffmpeg() -> str:
 
 
 def check_target(out: Path) -> None:
-    """Refuses a file that cannot become a video.
+    """Refuses a path at which no video can be written.
 
     Raises:
-        VideoError: it has another ending, is there already, or has no folder.
+        VideoError: The suffix is not supported, the file already exists, or its folder does not.
     """
     name = brief(str(out))
     if out.suffix.lower() not in FORMATS:
@@ -49,16 +49,16 @@ def check_target(out: Path) -> None:
 
 
 class Encoder:
-    """A video that is being written. The file gets its name when the last picture is in it.
+    """A video that is being written. The file gets its name once the last picture is written.
 
     Args:
-        out: the new file, which ends in one of `FORMATS`.
-        width: of a picture [pixel], even.
-        height: of a picture [pixel], even.
-        rate: pictures per second.
+        out: Path of the new file, with a suffix in `FORMATS`.
+        width: Width of a picture [pixel], even.
+        height: Height of a picture [pixel], even.
+        rate: Pictures per second.
 
     Raises:
-        VideoError: `out` cannot be written, or ffmpeg is not there, or it fails.
+        VideoError: `out` cannot be written, or ffmpeg is not installed or fails.
     """
 
     def __init__(self, out: Path, width: int, height: int, rate: int) -> None:
@@ -68,7 +68,7 @@ class Encoder:
         given = ("-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}", "-r", str(rate), "-i", "-")
         command = (find_ffmpeg(), "-hide_banner", "-loglevel", "error", *given, *FORMATS[out.suffix.lower()])
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 - it lives as long as the program: `__exit__` closes it
-        # In a session of its own, so that Ctrl-C reaches this program alone, which then removes the draft.
+        # In a separate session, so that Ctrl-C reaches only this program, which then removes the draft.
         self._program = subprocess.Popen(
             [*command, str(self._draft)], stdin=subprocess.PIPE, stderr=self._log, start_new_session=True
         )

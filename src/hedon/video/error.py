@@ -1,7 +1,7 @@
-"""What a video cannot be made from, or written to."""
+"""The error that videos raise."""
 
 from hedon.error import HedonError
 
 
 class VideoError(HedonError):
-    """A moment that was not recorded, or a file that cannot be written."""
+    """A moment was not recorded, or a file cannot be written."""

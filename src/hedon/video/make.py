@@ -17,13 +17,13 @@ Progress = Callable[[int, int, int], None]
 
 @dataclass(frozen=True)
 class FrameRange:
-    """What of a world a video shows.
+    """The part of a world that a video shows.
 
     Attributes:
-        first: the step of the first picture.
-        last: the step that the last picture does not pass.
-        speed: steps from one picture to the next.
-        follow: the agent in the middle; None for the whole arena.
+        first: Step of the first picture.
+        last: Latest step of the last picture.
+        speed: Steps from one picture to the next.
+        follow: ID of the agent in the center of the view; None for the whole arena.
     """
 
     first: int
@@ -33,17 +33,24 @@ class FrameRange:
 
     @property
     def pictures(self) -> int:
-        """Their number."""
+        """The number of pictures."""
         return (self.last - self.first) // self.speed + 1
 
 
 def choose_range(
     footage: Footage, first: int | None, last: int | None, speed: int, follow: int | None = None
 ) -> FrameRange:
-    """What to show; by default all that was recorded, or all of the life of the followed agent.
+    """The range to show; by default everything recorded, or the whole life of the followed agent.
+
+    Args:
+        footage: The world.
+        first: Step of the first picture; None for the default.
+        last: Latest step of the last picture; None for the default.
+        speed: Steps from one picture to the next.
+        follow: ID of the agent to follow; None for the whole arena.
 
     Raises:
-        VideoError: there are no frames of these steps or of this agent.
+        VideoError: There are no frames of these steps or of this agent.
     """
     begin, end = (footage.first, footage.last) if follow is None else footage.lifetime(follow)
     what = "the frames reach" if follow is None else f"agent {follow} is in the frames"
@@ -60,15 +67,15 @@ def make_video(footage: Footage, shown: FrameRange, out: Path, width: int, rate:
     """Writes a video.
 
     Args:
-        footage: the world.
-        shown: what to show of it.
-        out: the new file, .mp4 or .gif.
-        width: of a picture [pixel].
-        rate: pictures per second.
-        progress: called after each picture.
+        footage: The world.
+        shown: The part of it to show.
+        out: Path of the new file, .mp4 or .gif.
+        width: Width of a picture [pixel].
+        rate: Pictures per second.
+        progress: Called after each picture.
 
     Raises:
-        VideoError: ffmpeg is not there, or the file cannot be written.
+        VideoError: ffmpeg is not installed, or the file cannot be written.
     """
     check_target(out)
     find_ffmpeg()

@@ -1,4 +1,4 @@
-"""Moments of a world from the frames of its run: those recorded, and between two of them by even motion."""
+"""Moments of a world from the frames of its run: recorded ones, and interpolated ones between two frames."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ from hedon.record.snapshot import Snapshot, own_bodies
 from hedon.video.error import VideoError
 
 EVEN_STEPS = 128
-"""Agents are moved evenly between frames that are at most this far apart; longer apart, they turn too often [step]."""
+"""Largest distance between frames for which agents are interpolated [step]; over longer times they turn too often."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,11 @@ class Footage:
     """The frames of one world.
 
     Attributes:
-        run: with frames.
-        config: of the run.
-        world: the world's index in the run.
-        first: the first recorded step.
-        last: the last one.
+        run: The run, which must have frames.
+        config: Config of the run.
+        world: Index of the world in the run.
+        first: First recorded step.
+        last: Last recorded step.
     """
 
     run: Run
@@ -39,17 +39,17 @@ class Footage:
     last: int
 
     def moments(self, first: int, last: int, speed: int) -> Iterator[Snapshot]:
-        """The world at `first`, `first + speed`, … up to `last`, one after the other.
+        """Yields the world at `first`, `first + speed`, … up to `last`.
 
         Frames are read part by part, so a long run needs no more memory than a short one.
 
         Args:
-            first: [step].
-            last: [step].
-            speed: steps from one moment to the next.
+            first: First moment [step].
+            last: Last possible moment [step].
+            speed: Steps from one moment to the next.
 
         Raises:
-            RecordError: a frame is damaged.
+            RecordError: A frame is damaged.
         """
         recorded = self._recorded(first - self.run.manifest.frames, last + self.run.manifest.frames)
         before, after = next(recorded, None), next(recorded, None)
@@ -64,7 +64,7 @@ class Footage:
         """The first and the last recorded step of an agent.
 
         Raises:
-            VideoError: no frame has this agent.
+            VideoError: No frame contains this agent.
         """
         found = _steps(self.run, (pl.col("world") == self.world) & (pl.col("id") == agent))
         if found is None:
@@ -72,7 +72,7 @@ class Footage:
         return found
 
     def usual_energy(self) -> float:
-        """The energy that one in twenty agents exceeds: the end of the scale of colors."""
+        """The energy that one in twenty agents exceeds, used as the end of the color scale."""
         parts = self.run.frame_parts("world", "energy")
         quantile = pl.concat(rows.filter(pl.col("world") == self.world)["energy"] for rows in parts).quantile(0.95)
         return 40.0 if quantile is None else max(float(quantile), 40.0)
@@ -89,12 +89,12 @@ class Footage:
 
     @cached_property
     def _genomes(self) -> pl.DataFrame:
-        """The genes of all agents that set numbers, by column."""
+        """The genes that set body parameters, of all agents, by column."""
         names = {gene_column(path) for own in self.config.species.values() for path in own.genome.set}
         return self.run.agents().filter(pl.col("world") == self.world).select("agent_id", *names)
 
     def _genes(self, ids: pl.Series) -> dict[str, NDArray[np.float32]]:
-        """The genes of agents that set numbers, by column; NaN where a species lacks one."""
+        """The genes of agents that set body parameters, by column; NaN if a species lacks one."""
         if not any(own.genome.set for own in self.config.species.values()):
             return {}
         rows = pl.DataFrame({"agent_id": ids}).join(self._genomes, on="agent_id", how="left", maintain_order="left")
@@ -135,11 +135,15 @@ class Footage:
 
 
 def open_footage(folder: Path, seed: int | None = None) -> Footage:
-    """The frames of one world of a run.
+    """Opens the frames of one world of a run.
+
+    Args:
+        folder: Folder of the run.
+        seed: Seed of the world; None for the first.
 
     Raises:
-        VideoError: the run has no frames, or no such world.
-        RecordError: it is not a run, or a part of its frames is damaged.
+        VideoError: The run has no frames, or no such world.
+        RecordError: The folder is not a run, or a part of its frames is damaged.
     """
     run = open_run(folder)
     seeds = run.manifest.seeds
@@ -153,14 +157,20 @@ def open_footage(folder: Path, seed: int | None = None) -> Footage:
 
 
 def _steps(run: Run, wanted: pl.Expr) -> tuple[int, int] | None:
-    """The first and the last step of the frames that have such rows."""
+    """The first and the last step of frames with matching rows."""
     parts = [rows.filter(wanted)["step"] for rows in run.frame_parts("world", "step", "id")]
     known = pl.concat([pl.Series("step", [], pl.Int64), *parts])
     return (int(known[0]), int(known[-1])) if len(known) else None
 
 
 def blend(before: Snapshot, after: Snapshot | None, step: int) -> Snapshot:
-    """The world at a step between two frames: agents that are in both move evenly, all else stays as it was."""
+    """The world at a step between two frames: agents in both frames move evenly, and all else stays as before.
+
+    Args:
+        before: The earlier frame.
+        after: The later frame; None if there is none.
+        step: The step [step].
+    """
     if after is None or step <= before.step or after.step - before.step > EVEN_STEPS:
         return replace(before, step=step)
     share = (step - before.step) / (after.step - before.step)
