@@ -132,7 +132,7 @@ _HARM = (
 
 
 def agent_table(columns: Columns) -> Table:
-    """Schema with one row per agent: the parts contain the dead, `living.parquet` the agents alive at the last flush."""
+    """Schema with one row per agent: the dead in the parts, those alive at the last flush in `living.parquet`."""
     return _table(
         "agents",
         "one agent; living agents have no death_step",
