@@ -1,8 +1,8 @@
-"""How studies of the classics answer: an effect with its interval first, then yes, no or open by one rule.
+"""The rule by which studies of classic claims answer: an effect with its interval, then yes, no or open.
 
-A test has one number per world, or per pair of worlds, and a side on which the claim holds. Fewer than `FOR_VERDICT`
-numbers leave it open. Otherwise it is yes if the effect lies on that side, no if on the other, with p below `CHANCE`
-after Holm's correction for all named tests of the study; else it is open.
+A test has one number per world, or per pair of worlds, and a side on which the claim holds. With fewer than
+`FOR_VERDICT` numbers the answer is open. Otherwise, if p is below `CHANCE` after Holm correction for all named tests of
+the study, the answer is yes if the effect is on that side, and no if it is on the other. If p is not, it is open.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,23 +19,23 @@ from hedon.statistic import FOR_VERDICT, LEVEL, holm, mean_interval, share_inter
 stats: Any = load("scipy.stats", suppress_warning=True)
 
 CHANCE = 0.05
-"""Chance, after correction, from which on an answer stays open."""
+"""Corrected p at and above which an answer is open."""
 YES, NO, OPEN = "yes", "no", "open"
 
 
 @dataclass(frozen=True)
 class Test:
-    """What the worlds tell of one claim.
+    """The test of one claim. Numbers that cannot be computed are NaN.
 
     Attributes:
-        name: of the claim.
-        worlds: that it is made of.
-        values: how many of these have a value.
-        extinct: how many of these died out; they count.
-        above: whether the claim holds above 0, rather than below.
-        effect: measured; NaN where it cannot be, as what follows.
-        low, high: bounds of its 95 % interval.
-        p: two-sided chance of so large an effect if there is none.
+        name: Name of the claim.
+        worlds: Number of worlds, or of pairs of worlds.
+        values: Number of these with a value.
+        extinct: Number of worlds that died out, which are included.
+        above: Whether the claim holds above 0 instead of below.
+        effect: The measured effect.
+        low, high: Bounds of its 95 % interval.
+        p: Two-sided p value of the effect.
     """
 
     name: str
@@ -58,14 +58,14 @@ class Test:
 
 
 def slope_test(name: str, x: ArrayLike, y: ArrayLike, extinct: int, *, above: bool) -> Test:
-    """The slope of y over x by least squares, with Student's interval.
+    """Tests the slope of y over x, by least squares with Student's interval.
 
     Args:
-        name: of the claim.
-        x: one number per world, (worlds,).
-        y: one number per world, (worlds,).
-        extinct: how many of the worlds died out.
-        above: whether the claim holds above 0.
+        name: Name of the claim.
+        x: A number for each world, shape (worlds,).
+        y: A number for each world, shape (worlds,).
+        extinct: Number of worlds that died out.
+        above: Whether the claim holds above 0.
     """
     across, values = np.asarray(x, np.float64), np.asarray(y, np.float64)
     if len(across) < 3 or np.ptp(across) == 0:
@@ -76,14 +76,14 @@ def slope_test(name: str, x: ArrayLike, y: ArrayLike, extinct: int, *, above: bo
 
 
 def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above: bool) -> Test:
-    """The mean of some values, with Student's interval.
+    """Tests the mean of some values, with Student's interval.
 
     Args:
-        name: of the claim.
-        values: one per world, or per pair of worlds, (values,).
-        worlds: how many worlds or pairs these are.
-        extinct: how many of the worlds died out.
-        above: whether the claim holds above 0.
+        name: Name of the claim.
+        values: Value of each world, or pair of worlds, shape (values,).
+        worlds: Number of worlds or pairs.
+        extinct: Number of worlds that died out.
+        above: Whether the claim holds above 0.
     """
     known = np.asarray(values, np.float64)
     if len(known) < 2:
@@ -95,7 +95,16 @@ def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above:
 
 
 def count_test(name: str, count: int, worlds: int, extinct: int, chance: float, *, above: bool) -> Test:
-    """The share of worlds that have something, less the share that chance gives, with its interval."""
+    """Tests the share of worlds with a property, minus the share expected by chance.
+
+    Args:
+        name: Name of the claim.
+        count: Number of worlds with the property.
+        worlds: Number of all worlds.
+        extinct: Number of worlds that died out.
+        chance: Share expected by chance.
+        above: Whether the claim holds above that share.
+    """
     if not worlds:
         return Test(name, worlds, 0, extinct, above)
     low, high = share_interval(count, worlds)
@@ -104,7 +113,14 @@ def count_test(name: str, count: int, worlds: int, extinct: int, chance: float, 
 
 
 def verdict_table(name: str, tests: Sequence[Test], note: str = "", named: int = 0) -> ResultTable:
-    """The answers to all named tests of a study, which are corrected for each other."""
+    """A table of the answers of all named tests of a study, corrected for one another.
+
+    Args:
+        name: Name of the table.
+        tests: The tests.
+        note: Remark below the table.
+        named: Number of tests that the study names, if more than these.
+    """
     others = [1.0] * (named - len(tests))
     corrected = holm([*(1.0 if np.isnan(test.p) else test.p for test in tests), *others])[: len(tests)]
     rows: list[Mapping[str, Any]] = [

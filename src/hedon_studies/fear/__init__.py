@@ -1,1 +1,1 @@
-"""The sequel to the paper, on prey that see predators: its claims, and what its figures show."""
+"""The sequel to the paper, on prey that see predators: its claims and figures."""

@@ -1,16 +1,17 @@
-"""What does the sequel claim of prey that see predators? Each claim with its rule.
+"""The sequel's claims about prey that see predators, each with the rule that decides it.
 
 The rules were written before any run of full length, but after short assays and two worlds of 425,570 steps were read.
 
-Kanagawa & Doya, "Evolution of Fear and Social Rewards in Prey-Predator Relationship", arXiv 2507.09992, version 2 of
-7 February 2026, whose claims are (a) to (e) here. Version 1 said otherwise: fear only after social reward, and positive
-rewards for threats that stand still. Its figures are of five runs of 10,240,000 steps per condition, after extinct runs
-were replaced: kept were 5 of 6, 5 of 13, 5 of 6 and 5 of 7. So each verdict here says which share of all worlds keeps
-its species. A weight is read as its *score* in its world: where its mean ends among neutral genes of the same
-pedigree, in standard deviations of drift. So a world in which weights wander far counts no more than others. The
-claims are one family: each interval is at the level that makes one false verdict among all of them, by Bonferroni's
-inequality, come up in at most 5 %. Worlds where a species died out are left out: without predators nobody selects
-fear.
+The source is Kanagawa & Doya, "Evolution of Fear and Social Rewards in Prey-Predator Relationship", arXiv 2507.09992,
+version 2 of 7 February 2026, whose claims are (a) to (e) here. Version 1 made other claims: fear only after social
+reward, and positive rewards for threats that stand still. Its figures show five runs of 10,240,000 steps per condition,
+after extinct runs were replaced: 5 of 6, 5 of 13, 5 of 6 and 5 of 7 were kept. Each verdict here therefore reports the
+share of all worlds that keeps its species.
+
+A weight is measured by its *score* in its world: the end of its mean among neutral genes of the same pedigree, in
+standard deviations of drift. A world in which weights wander far therefore has no more influence than others. The
+claims form one family: by Bonferroni's inequality, the level of each interval limits the chance of any false verdict to
+5 %. Worlds in which a species died out are left out, since fear is not selected without predators.
 """
 
 from functools import partial
@@ -24,29 +25,29 @@ from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
 SEQUEL = "Kanagawa & Doya, arXiv 2507.09992v2"
 FAR = 1.96
-"""A score further from 0 than this is in the outer 5 % of neutral genes."""
+"""Size of a score beyond which it is in the outer 5 % of neutral genes."""
 BY_CHANCE = 0.025
 """Share of worlds in which a neutral gene is that far out on one side."""
 OFTEN = 0.25
-"""At least this share of worlds is often: ten times as many as by chance. Our choice."""
+"""Share of worlds from which we speak of "often": ten times as many as by chance. The value is our choice."""
 FAMILY = 6
-"""Verdicts that are corrected together."""
+"""Number of verdicts that are corrected together."""
 FAMILY_LEVEL = 1.0 - 0.05 / FAMILY
 
 
 def own_score(world: WorldRecord) -> float | None:
-    """Score of the weight for seeing one's own species; None without a whole pedigree."""
+    """The score of the weight for seeing one's own species; None without a complete pedigree."""
     return score(f"w_see_{world.species}", world)
 
 
 def hunter_score(world: WorldRecord) -> float | None:
-    """Score of the weight for seeing who eats one's species, the lowest if there are several; None as for `score`."""
+    """The score of the weight for seeing a species that eats one's own, the lowest if several; None as for `score`."""
     scores = [score(f"w_see_{name}", world) for name in hunters(world.config, world.species)]
     return min((each for each in scores if each is not None), default=None)
 
 
 def fear(world: WorldRecord) -> float | None:
-    """Score of the dislike of seeing who eats one's species; None as for `score`."""
+    """The score of the dislike of seeing a species that eats one's own; None as for `score`."""
     found = hunter_score(world)
     return None if found is None else -found
 
@@ -57,7 +58,7 @@ def _obstacle_fear(world: WorldRecord) -> float | None:
 
 
 def _beyond_drift(measure: WorldNumber, world: WorldRecord) -> float | None:
-    """By how much a score is further above 0 than 97.5 % of neutral genes; None as for the score."""
+    """How far a score is above the 97.5 % point of neutral genes; None as for the score."""
     found = measure(world)
     return None if found is None else found - FAR
 

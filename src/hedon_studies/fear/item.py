@@ -1,4 +1,4 @@
-"""The sequel to the paper, on predators, prey and pitfalls: what its figures show, and what we ask of the same worlds.
+"""The sequel to the paper, on predators, prey and pitfalls: its figures, and our own questions about the same worlds.
 
 Kanagawa & Doya, "Evolution of Fear and Social Rewards in Prey-Predator Relationship", arXiv 2507.09992, version 2. Its
 claims and their rules are in `hedon_studies.fear.claim`.
@@ -19,11 +19,11 @@ from hedon_studies.kanagawa_doya_2024.evolved_weight import draw_last
 from hedon_studies.kanagawa_doya_2024.weight_history import draw_courses
 
 SCALE = Scale((1, 2, 3, 4, 5), 2_048_000)
-"""Our choice; the sequel has five runs of 10,240,000 steps for each condition."""
+"""Our scale; the sequel has five runs of 10,240,000 steps for each condition."""
 FRAMES = 1024
 """Steps between two records of all positions."""
 LATE = 51_200
-"""Steps at the end of a world over which its numbers are averaged."""
+"""Number of steps at the end of a world over which its numbers are averaged."""
 PREY, PREDATOR = "prey", "predator"
 
 MAIN = Condition("prey", "predator")

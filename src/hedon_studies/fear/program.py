@@ -1,4 +1,4 @@
-"""Is `released` the sequel's program? Its first windows beside those of a run of that program.
+"""Does `released` behave like the sequel's program? Compares its first windows with a run of that program.
 
 The program (public repository, branch of the submission, 20 January 2026) was run with one seed of each world.
 """
@@ -23,7 +23,7 @@ PREDATOR_RUN = {
     4: (450, 15, 18, 18, 420, 30.0),
     6: (450, 17, 16, 14, 430, 29.5),
 }
-"""By window: prey alive, predators alive, prey born, prey eaten, food lying at the end, mean energy of prey."""
+"""By window: prey alive, predators alive, prey born, prey eaten, food present at the end, mean energy of prey."""
 PITFALL_RUN = {
     1: (254, 164, 70, 495, 45.2),
     2: (336, 152, 70, 238, 29.0),
@@ -32,7 +32,7 @@ PITFALL_RUN = {
     8: (410, 30, 36, 79, 15.7),
     10: (379, 21, 43, 75, 15.4),
 }
-"""By window: alive, born, died, agent-steps in touch with a triangle, mean energy."""
+"""By window: alive, born, died, agent-steps in contact with a triangle, mean energy."""
 PITFALL_COLUMNS = ("alive", "births", "deaths", "obstacles_touched", "energy_mean")
 PREY_COLUMNS = ("births", "deaths_eaten", "food_normal", "energy_mean")
 _READ = (
@@ -42,10 +42,14 @@ _READ = (
 
 
 def window(world: WorldRecord, number: int) -> dict[str, float]:
-    """What is known of one window of a world.
+    """The record of one window of a world.
+
+    Args:
+        world: The world.
+        number: Number of the window.
 
     Returns:
-        The row of that window by column; empty where the record does not reach it.
+        The row of that window by column; empty if the record does not reach it.
     """
     rows = world.population.filter(pl.col("step") == number * WINDOW)
     return rows.row(0, named=True) if len(rows) else {}

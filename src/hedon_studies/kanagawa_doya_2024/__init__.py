@@ -1,1 +1,1 @@
-"""The paper again: what it reports and claims, its figures and tables, and our studies of what it leaves open."""
+"""The reproduction of the paper: its reports and claims, its figures and tables, and our studies of open questions."""

@@ -1,8 +1,8 @@
-"""Study: does it matter that agents act by weights of 16 bits?
+"""Study: does it matter that agents act with 16-bit weights?
 
-What would matter, as it was fixed before both conditions were compared: a lifetime or a rate of food that differs by a
-tenth, ten agents alive, or a weight that differs by 1, a twentieth of the range. An interval that lies within these
-bounds says that it does not matter; one that reaches beyond leaves it open.
+We fixed what would matter before the two conditions were compared: a difference of a tenth in lifetime or rate of food,
+of ten agents alive, or of 1 in a weight, which is a twentieth of its range. If an interval is within these bounds, the
+16-bit weights do not matter; if it extends beyond, the question is open.
 """
 
 from collections.abc import Iterator

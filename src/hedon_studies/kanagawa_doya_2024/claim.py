@@ -1,7 +1,7 @@
-"""What does the paper claim of one condition, and what would count as its being so? Each claim with its rule.
+"""The paper's claims about single conditions, each with the rule that decides it.
 
 The paper gives no spread for its tables, so "the same" means within a factor that is chosen here. Claims that compare
-two conditions stand in `order`.
+two conditions are in `order`.
 """
 
 import math
@@ -29,19 +29,19 @@ optimize: Any = load("scipy.optimize", suppress_warning=True)
 
 SOURCE = "Kanagawa & Doya (2024); docs/model.md, section 14"
 SAME_FACTOR = 1.5
-"""Rates of food and distances from a start within this factor count as the same: half of the food does not."""
+"""Rates of food and distances from a start within this factor count as the same; half as much food does not."""
 SAME_LIFETIME = 1.1
-"""Lifetimes within this factor count as the same. An agent that never eats lives 5,095 steps, 0.81 of what the paper
-reports for the baseline and 0.89 of what it reports for the large arena: a rule with a wider factor could not fail."""
+"""Lifetimes within this factor count as the same. An agent that never eats lives 5,095 steps: 0.81 of the paper's value
+for the baseline and 0.89 of its value for the large arena. With a wider factor, the rule could not fail."""
 MOST = 0.5
-"""More than this share is most."""
+"""Share above which we speak of most worlds."""
 SOME = (0.05, 0.95)
-"""Some worlds die out and some do not if the share of extinct ones lies between these."""
+"""Range of the share of extinct worlds in which some worlds die out and some do not."""
 OLD_SHARE = 0.05
-"""The lifespan of agents is read as the age that this share of those with full energy reaches."""
+"""The lifespan of agents is read as the age that this share of agents with full energy reaches."""
 
 WEIGHTS = {"w_normal": "food", "w_action": "action"}
-"""The reward weights that all conditions have, and what claims call them."""
+"""The reward weights that all conditions have, with their names in claims."""
 
 _claim = partial(Claim, steps=STEPS, source=SOURCE)
 
@@ -51,7 +51,12 @@ def _about(preset: str) -> Condition:
 
 
 def score(weight: str, world: WorldRecord) -> float | None:
-    """A weight's score among neutral genes of the same pedigree; None without a whole pedigree."""
+    """A weight's score among neutral genes of the same pedigree; None without a complete pedigree.
+
+    Args:
+        weight: Genome column of the weight.
+        world: The world.
+    """
     return next((found.score for found in standard_drift(world, LAST_AGENTS) if found.weight == weight), None)
 
 

@@ -1,4 +1,4 @@
-"""Study: over all of the paper's conditions, which weights went further, or more in one direction, than drift?"""
+"""Study: in which of the paper's conditions did weights move further, or more in one direction, than under drift?"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
@@ -38,13 +38,21 @@ _DRAWN = (
 )
 
 Scores = Mapping[str, Mapping[int, Sequence[WorldDrift]]]
-"""Per condition and seed, the drift of each weight; worlds without a whole pedigree are left out."""
+"""The drift of each weight by condition and seed; worlds without a complete pedigree are left out."""
 
 
 def make_drift(
     conditions: Sequence[Condition], rewards: Mapping[str, str], scale: Scale, name: str, inputs: ItemInputs
 ) -> Iterator[NamedFigure | ResultTable]:
-    """The figure and the tables of scores against drift."""
+    """Makes the figure and the tables of scores against drift.
+
+    Args:
+        conditions: Conditions of the study.
+        rewards: Titles of the weights, by genome column.
+        scale: Number and length of the worlds that the study needs.
+        name: Name of the item.
+        inputs: Data with the worlds.
+    """
     worlds = present(conditions, inputs)
     scores = {
         label: {w.seed: found for w in group if (found := standard_drift(w, LAST_AGENTS))}
@@ -96,7 +104,7 @@ def _world_rows(scores: Scores) -> Iterator[dict[str, Any]]:
 
 
 def _points(scores: Scores) -> dict[str, dict[int, dict[str, float]]]:
-    """Per condition and seed the score of each weight."""
+    """The score of each weight by condition and seed."""
     return {
         label: {seed: {found.weight: found.score for found in drifts} for seed, drifts in by_seed.items()}
         for label, by_seed in scores.items()

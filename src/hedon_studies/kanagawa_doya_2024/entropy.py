@@ -1,4 +1,4 @@
-"""Study: does the bonus for entropy set how large the weight of food must be?"""
+"""Study: does the entropy bonus determine how large the weight of food must be?"""
 
 from collections.abc import Iterator, Sequence
 

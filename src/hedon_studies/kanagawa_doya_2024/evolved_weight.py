@@ -1,4 +1,4 @@
-"""The paper's figures of evolved rewards: the weights of the agents of each world that were born last."""
+"""The paper's figures of evolved rewards: the weights of the agents born last in each world."""
 
 from collections.abc import Iterator, Sequence
 from functools import partial
@@ -18,7 +18,15 @@ _READ = (
 def draw_last(
     name: str, question: str, conditions: Sequence[Condition], panels: Sequence[tuple[str, str]], inputs: ItemInputs
 ) -> Iterator[NamedFigure]:
-    """The weights of those born last in the worlds of some conditions, by default food against action, side by side."""
+    """Draws the weights of the agents born last in the worlds of some conditions, side by side.
+
+    Args:
+        name: Name of the figure.
+        question: The question that it answers.
+        conditions: The conditions.
+        panels: Genome columns along the axes of each panel; food against action if empty.
+        inputs: Data with the worlds.
+    """
     panels = panels or hedon.figure.against_action(("w_normal",))
     worlds = present(conditions, inputs)
     caption = sentences(_READ, missing(conditions, inputs))

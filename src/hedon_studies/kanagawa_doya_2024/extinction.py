@@ -1,4 +1,4 @@
-"""The paper's table of extinction: which costs of living and of action let a world die out?"""
+"""The paper's table of extinction: at which costs of living and of action does a world die out?"""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -26,7 +26,7 @@ def _condition(basic_cost: float, action_cost: float) -> Condition:
 
 
 CONDITIONS = {_condition(*costs): share for costs, share in EXTINCTION.items()}
-"""The paper's settings, with the share of worlds that it reports extinct."""
+"""The paper's conditions, with the share of worlds that it reports as extinct."""
 
 
 def _make(inputs: ItemInputs) -> Iterator[ResultTable]:
@@ -68,7 +68,7 @@ def _row(condition: Condition, worlds: Sequence[WorldRecord], paper: float) -> d
 
 
 def _furthest_step(worlds: Sequence[WorldRecord]) -> int:
-    """The step up to which some world is known to live, or the paper's where all died out: who died out stays so."""
+    """The last step at which a world is known to be alive; the paper's step if all died out, which is permanent."""
     return max((world.last_step for world in worlds if world.extinct_step is None), default=EXTINCTION_STEP)
 
 

@@ -1,4 +1,4 @@
-"""Study: what do the released code's faults and its contact solver do, alone and together?"""
+"""Study: what are the effects and interactions of the faults and the contact solver of the paper's program?"""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -16,8 +16,8 @@ FACTORS = {
     "critic": "learning.critic_target=batch_mean",
     "solver": "physics.solver=jacobi",
 }
-"""What differs, and the override that has each. The other differences of the fidelity `released` are smaller; they are
-in no cell."""
+"""The factors, each with the override that enables it. The other differences of the fidelity `released` are smaller
+and not included in any cell."""
 
 SCALE = Scale((1, 2, 3), 512_000)
 _MAIN = (
@@ -53,13 +53,13 @@ _CELL = (
 
 
 def cell_label(cell: Cell) -> str:
-    """What a combination of faults is called."""
+    """The label of a combination of faults."""
     there = [name for name, is_there in zip(FACTORS, cell, strict=True) if is_there]
     return "all" if len(there) == len(FACTORS) else " + ".join(there) or "none"
 
 
 def _in_order() -> list[Cell]:
-    """None, each alone, pairs, all; as `all_effects` has them."""
+    """No fault, single faults, pairs and so on, in the order of `all_effects`."""
     effects = [(), *all_effects(len(FACTORS))]
     return [tuple(i in group for i in range(len(FACTORS))) for group in effects]
 
@@ -112,7 +112,7 @@ def make_faults(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
 
 
 def effect_name(factors: Factors) -> str:
-    """What an effect or interaction is called."""
+    """The name of an effect or interaction."""
     names = list(FACTORS)
     return " \N{MULTIPLICATION SIGN} ".join(names[i] for i in factors)
 
@@ -138,7 +138,7 @@ def _effect_rows(measure: Measure, fit: FactorialFit) -> Iterator[dict[str, Any]
 
 
 def _missing_effects(fits: Mapping[str, FactorialFit]) -> str:
-    """Names what could not be estimated, and what only without interactions; measures with the same gaps together."""
+    """A note on effects that could not be estimated, or only without interactions, for measures with equal gaps."""
     gaps: dict[str, list[str]] = {}
     for name, fit in fits.items():
         narrow = [effect_name(effect.factors) for effect in fit.effects if effect.order < len(FACTORS)]

@@ -1,4 +1,4 @@
-"""Items from the settings alone: the laws of death, birth and mutation."""
+"""Items that need only settings: the laws of death, birth and mutation."""
 
 from collections.abc import Iterator
 
@@ -24,7 +24,7 @@ _LINES = (
 
 
 def window_births(config: Config) -> int:
-    """The births that an arena full of agents without energy tries in a window of learning."""
+    """The births attempted in a window of learning by an arena full of agents without energy."""
     own = config.species[ONLY]
     chance = float(birth_rate(own.birth, 0.0))
     return max(round(own.population.capacity * chance * config.world.rollout_steps), 1)

@@ -1,4 +1,4 @@
-"""The paper's tables of lives: how long agents live and how much they eat, by size of the arena and place of food."""
+"""The paper's tables of lifetimes and food eaten, by size of the arena and place of food."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -13,7 +13,7 @@ from hedon.study import Condition, Item, ItemInputs, count_extinct, missing, pre
 from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, SIZES
 from hedon_studies.kanagawa_doya_2024.paper import paper_figures
 
-# Column of the table of worlds: what it is called, and which of the paper's figures is made by the same rule.
+# Columns of the table of worlds, each with its title and the paper's figure that is computed by the same rule.
 _QUANTITIES = {
     "mean_of_dead": ("mean lifetime of the dead [step]", "mean_lifetime"),
     "restricted_mean": ("restricted mean lifetime [step]", None),
@@ -82,7 +82,7 @@ def _rows(condition: Condition, worlds: Sequence[WorldRecord], by_world: pl.Data
 
 
 def _ages(by_world: pl.DataFrame) -> str:
-    """Up to which age the restricted means go, condition by condition."""
+    """The age limit of the restricted means, by condition."""
     if by_world.is_empty():
         return ""
     ages = by_world.group_by("condition", maintain_order=True).agg(pl.col("until").first())

@@ -1,4 +1,4 @@
-"""Rows and figure of what a world's mutations predict, for the studies that ask it."""
+"""Tables and figure of the drift that a world's mutations predict, for several studies."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -35,11 +35,11 @@ _GENE = (
 _BRIEF = ("weight", "numbers", "bias", "slope", "displacement", "generations", "line_mean", "end")
 
 Drifts = Mapping[str, Sequence[tuple[int, Drift]]]
-"""Per condition, the seed of each world and the drift of each of its genes."""
+"""For each condition, pairs of a world's seed and the drift of one of its genes."""
 
 
 def condition_drifts(inputs: ItemInputs, conditions: Sequence[Condition]) -> Drifts:
-    """All genes of all worlds of some conditions."""
+    """The drift of all genes in all worlds of some conditions."""
     return {
         condition.label: [
             (world.seed, found)
@@ -52,7 +52,13 @@ def condition_drifts(inputs: ItemInputs, conditions: Sequence[Condition]) -> Dri
 
 
 def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | ResultTable]:
-    """The figure and the two tables of a study."""
+    """Makes the figure and the two tables of a study.
+
+    Args:
+        name: Name of the item.
+        drifts: Drift of genes, by condition.
+        note: Remark below the tables.
+    """
     shown = {label: [drift for _, drift in found] for label, found in drifts.items()}
     question = "Do weights go where mutations push them?"
     yield NamedFigure(f"{name}_prediction", question, figure.draw_predictions(shown, GENES), _DRAWN)
@@ -73,7 +79,7 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
 
 
 def _prediction_rows(label: str, drifts: Sequence[Drift], worlds: int) -> Iterator[dict[str, Any]]:
-    """Genes of one world share its pedigree, so bounds and chances are given from five worlds on, not three pairs."""
+    """Rows with bounds and p values from five worlds up, not three pairs, since a world's genes share a pedigree."""
     for comparison in COMPARISONS:
         for weight in (*GENES, _ALL):
             mine = [drift for drift in drifts if weight in (drift["weight"], _ALL)]

@@ -1,4 +1,4 @@
-"""Study: where does tabulated mutation noise carry the weights?"""
+"""Study: where does tabulated mutation noise drive the weights?"""
 
 from collections.abc import Iterator
 

@@ -1,7 +1,7 @@
-"""What does the paper claim about two conditions at once? Which of them has more, and how sure is that?
+"""The paper's claims about the order of two conditions.
 
-The figures of the first condition's worlds are compared with those of the second's, as a difference of means, a ratio
-of geometric means or a ratio of standard deviations. The interval of the comparison decides, as for claims about one.
+The figures of the worlds of both conditions are compared by a difference of means, a ratio of geometric means or a
+ratio of standard deviations. The interval of the comparison decides, as for claims about one condition.
 """
 
 import math
@@ -16,7 +16,7 @@ from hedon_studies.kanagawa_doya_2024.claim import SOURCE, WEIGHTS
 from hedon_studies.kanagawa_doya_2024.paper import PAPER, STEPS
 
 MUCH = 3.0
-"""Much longer (≫ in the paper) is read as at least this many times as long; the paper's own ratios are 12 and 13."""
+"""Ratio from which we read "much longer" (≫ in the paper) as true; the paper's own ratios are 12 and 13."""
 
 
 def _order(name: str, first: str, second: str, *rest: Any, **region: float) -> Order:

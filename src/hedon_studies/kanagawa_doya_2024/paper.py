@@ -1,6 +1,6 @@
-"""What did the paper report? Kanagawa & Doya (2024), means over 5 seeds of 10.24 million steps each.
+"""The results that the paper reports: Kanagawa & Doya (2024), means over 5 seeds of 10.24 million steps each.
 
-It gives no spread with its means, neither over agents nor over seeds, and does not say how they are weighted.
+The paper gives no spread of its means, neither over agents nor over seeds, and does not specify how they are weighted.
 """
 
 from dataclasses import asdict, dataclass
@@ -12,14 +12,14 @@ SEEDS = 5
 
 @dataclass(frozen=True)
 class PaperFigures:
-    """What the paper reports of one setting; None where it gives no number.
+    """The paper's results for one condition; None if it gives no number.
 
     Attributes:
-        mean_lifetime: unweighted over agents, by our reading: the paper does not say [step].
-        food_per_step: likewise, of foods / lifetime [1/step].
-        population: range of the number alive.
-        generation: range of the number of generations in a run.
-        claim: what it says about the weights that evolve.
+        mean_lifetime: Mean lifetime, by our reading unweighted over agents, which the paper does not specify [step].
+        food_per_step: Mean of foods / lifetime, likewise [1/step].
+        population: Range of the number of agents alive.
+        generation: Range of the number of generations in a run.
+        claim: Its statement about the weights that evolve.
     """
 
     mean_lifetime: float | None = None
@@ -47,7 +47,7 @@ PAPER: dict[str, PaperFigures] = {
 }
 
 LIFESPAN = 1_000_000
-"""Steps that an agent may live where energy does not end its life, about."""
+"""Approximate lifespan of an agent whose life is not ended by lack of energy [step]."""
 
 # Share of 10 seeds extinct by 1.024 million steps, by (basic_cost, action_cost) per step.
 EXTINCTION_STEP = 1_024_000
@@ -62,17 +62,17 @@ EXTINCTION: dict[tuple[float, float], float] = {
 
 
 ENDS = ("food=5,action=5", "food=5,action=-0.5")
-"""Our reading of where the paper's baseline ends: food "mostly above 4", action "largely positive or slightly
-negative". It prints no numbers (docs/model.md, section 14)."""
+"""Our reading of the end points of the paper's baseline: food "mostly above 4", action "largely positive or slightly
+negative". The paper prints no numbers (docs/model.md, section 14)."""
 
 
 def paper_figures(preset: str | None) -> PaperFigures | None:
-    """What the paper reports of a preset; None for a setting that is not in the paper."""
+    """The paper's results for a preset; None for a condition that is not in the paper."""
     return PAPER.get(preset or "")
 
 
 def reported() -> dict[str, dict[str, Any]]:
-    """What the paper reports of each preset, for `Study.reported`."""
+    """The paper's results for each preset, for `Study.reported`."""
     known = {preset: {"steps": STEPS} | {k: v for k, v in asdict(f).items() if v} for preset, f in PAPER.items()}
     for figures in known.values():
         if "population" in figures:

@@ -1,4 +1,4 @@
-"""The item of all parameters: what each setting means, its value, unit and source, from the config itself."""
+"""The item of all parameters: the meaning, value, unit and source of each setting, taken from the config."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -17,7 +17,7 @@ CONCERNS: dict[str, tuple[str, tuple[str, ...]]] = {
     "parameters_learning": ("Learning", ("learning",)),
     "parameters_world": ("Rules of the world", ("world",)),
 }
-"""Per table its title and the sections of a file that it tells; the paper has one species."""
+"""The title of each table, and the sections of a config file that it covers; the paper has one species."""
 _ORIGIN = (
     'Origin: "paper" is printed in Kanagawa & Doya (2024), "code" is the configuration of its released code, '
     '"ours" is a choice of this project; "paper or code" is the paper\'s value where it prints one, else the code\'s.'
@@ -42,7 +42,7 @@ def _parameters(inputs: ItemInputs) -> Iterator[ResultTable]:
 
 
 def _settings(fidelity: str) -> Iterator[Row]:
-    """A row per setting of the baseline; the fidelities' own values where these differ."""
+    """A row per setting of the baseline, with the values of each fidelity if they differ."""
     values = {other: flatten(BASELINE.config(other)) for other in FIDELITIES}
     for path, setting, value in file_leaves(BASELINE.config(fidelity)):
         each = {_column(other): format_value(values[other][path]) for other in FIDELITIES}

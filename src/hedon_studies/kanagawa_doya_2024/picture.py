@@ -1,4 +1,4 @@
-"""Items that show things as they are: the body, and the arenas with those who live there."""
+"""Items that show the body, and the arenas with the agents that live there."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""Study: what does the released program do over many seeds, and what is left of it if only survivors are kept?"""
+"""Study: what does the paper's program do over many seeds, and how do results change if only survivors are kept?"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -23,7 +23,7 @@ SCALE = Scale(tuple(range(1, 13)), 1_024_000)
 _PAPER_COSTS = (0.001, 2e-5)
 _GROUPS = {"all": FATES, "not extinct": (STANDING, HEADING), STANDING: (STANDING,)}
 _COMPARED = ("w_normal_last", "w_action_last", "mean_lifetime", "food_per_step", "alive_mean", "generation")
-"""Measures on which the paper reports."""
+"""Measures that the paper reports."""
 
 _DRAWN = "A line per world; a cross ends that of a world whose record ends before the longest."
 _WEIGHTS = (
@@ -65,7 +65,7 @@ def make_released(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
 
 
 def _weight_figures(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Iterator[NamedFigure]:
-    """The paper's figure of weights, of all worlds and of those that last; seeds keep their colors."""
+    """The paper's figure of weights, for all worlds and for the surviving ones; seeds keep their colors."""
     questions = {"released_weights": "Which rewards evolved, in all worlds?"}
     standing = [i for i, found in enumerate(fates) if not found.is_lost]
     shown = {"released_weights": list(range(len(worlds)))}
@@ -103,7 +103,7 @@ def _survivor_rows(rows: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]
 
 
 def _paper(name: str) -> str:
-    """What the paper reports for a measure in the baseline."""
+    """The value that the paper reports for a measure in the baseline."""
     said = PAPER["baseline"]
     texts = {
         "w_normal_last": "mostly above 4",
@@ -117,7 +117,7 @@ def _paper(name: str) -> str:
 
 
 def _with_bias(rows: Sequence[Mapping[str, Any]], drifts: Drifts) -> list[dict[str, Any]]:
-    """The rows, with the bias of each world's table beside its weights."""
+    """The rows, with the bias of each world's noise table added to its weights."""
     biases: dict[int, dict[str, float]] = {}
     for seed, drift in drifts[LABEL]:
         biases.setdefault(seed, {})[f"bias_{drift['weight']}"] = drift["bias"]

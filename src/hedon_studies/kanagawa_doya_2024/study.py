@@ -1,4 +1,4 @@
-"""The study of the paper, and that of what it leaves open."""
+"""The study that reproduces the paper, and the study of its open questions."""
 
 from hedon.study import Study
 from hedon_studies.kanagawa_doya_2024.acting import ACTING

@@ -1,4 +1,4 @@
-"""Study: could agents eat what the paper reports of the food that grows?"""
+"""Study: does enough food grow for agents to eat as much as the paper reports?"""
 
 from collections.abc import Iterator
 from typing import Any
@@ -19,7 +19,7 @@ from hedon_studies.kanagawa_doya_2024.fault import FACTORS
 from hedon_studies.kanagawa_doya_2024.paper import PAPER
 
 PRESETS = ("small", "baseline", "centered")
-"""The baseline, and the two in which the paper's agents live in plenty."""
+"""The baseline, and the two presets in which food is plentiful for the paper's agents."""
 CORRECTED, GROWTH, RELEASED = "corrected", "growth", "released"
 SCALE = Scale((1, 2), 1_024_000)
 
@@ -72,12 +72,12 @@ def _condition_row(condition: Condition, inputs: ItemInputs, rows: list[dict[str
 
 
 def growth(config: Config) -> float:
-    """Food that grows, over all kinds [food/step]."""
+    """Food that grows, summed over all kinds [food/step]."""
     return sum(kind.growth_rate for kind in config.food.values())
 
 
 def _eaters(rows: list[dict[str, Any]]) -> "list[figure.Eater]":
-    """The worlds that eat, as the figure shows them."""
+    """The worlds with food eaten, as entries of the figure."""
     eaters = []
     for row in rows:
         preset, rule = row["condition"].split(", ")

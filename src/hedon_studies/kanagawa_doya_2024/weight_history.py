@@ -1,4 +1,4 @@
-"""The paper's figures of how rewards evolve: mean weights over time, world by world, beside the neutral gene."""
+"""The paper's figures of how rewards evolve: mean weights over time in each world, compared with neutral genes."""
 
 from collections.abc import Iterator, Sequence
 from functools import partial
@@ -19,7 +19,14 @@ _READ = (
 def draw_courses(
     name: str, question: str, conditions: Sequence[Condition], inputs: ItemInputs
 ) -> Iterator[NamedFigure]:
-    """The mean weights of the worlds of some conditions, which must have the same genes, over time: a row for each."""
+    """Draws the mean weights of worlds over time, with a row per condition.
+
+    Args:
+        name: Name of the figure.
+        question: The question that it answers.
+        conditions: The conditions, which must have the same genes.
+        inputs: Data with the worlds.
+    """
     worlds = present(conditions, inputs)
     caption = sentences(_READ, missing(conditions, inputs))
     if not worlds:

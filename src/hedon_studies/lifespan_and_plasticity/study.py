@@ -32,7 +32,7 @@ CONDITIONS = {
 
 
 def measure(world: WorldRecord) -> dict[str, Any]:
-    """The evolved rate, a neutral gene beside it, and how long agents lived [step]; None where nobody died."""
+    """The evolved learning rate, a neutral gene, and how long agents lived [step]; None if no agent died."""
     return {
         "seed": world.seed,
         "died out": world.extinct_step is not None,
@@ -70,7 +70,7 @@ def named_tests(rows: Sequence[dict[str, Any]]) -> tuple[Test, Test]:
 
 
 def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
-    """The figure, the answers, and each world."""
+    """Makes the figure, and the tables of answers and of worlds."""
     question = "Do short lives and changing worlds make agents learn faster?"
     rows = [
         {"world": world, "hazard": hazard} | measure(record)

@@ -23,7 +23,7 @@ GENE = "w_see_agent"
 SEEDS = tuple(range(1, SETTINGS["seeds"] + 1))
 FORAGER, TRACKER = {GENE: MIXED["forager"]}, {GENE: MIXED["tracker"]}
 NAMED = 3
-"""Tests that the study names, in both of its items."""
+"""Number of tests that the study names, in both of its items."""
 
 
 def _mixed(share: float) -> Condition:
@@ -35,7 +35,7 @@ def _mixed(share: float) -> Condition:
 MIXTURES = {share: _mixed(share) for share in MIXED["shares"]}
 EVOLVED = Condition("evolving", SETTINGS["preset"], (*SETTINGS["overrides"], *EVOLVING["overrides"]))
 FEWEST = 100
-"""Agents born last, below which clusters are not asked for."""
+"""Smallest number of agents born last for the test of clusters."""
 RARE, COMMON = min(MIXTURES), max(MIXTURES)
 
 
@@ -45,7 +45,7 @@ def lines_of(world: WorldRecord) -> Lines:
 
 
 def invasion_tests(lines: Mapping[float, Sequence[Lines]]) -> tuple[Test, Test]:
-    """Whether each type grows where it begins as the rare one, from the worlds of each share of foragers."""
+    """Tests whether each type increases when it starts rare, from the worlds of each share of foragers."""
     found = []
     for name, share, above in (("foragers", RARE, True), ("trackers", COMMON, False)):
         worlds = lines.get(share, ())
@@ -62,7 +62,7 @@ def invasion_tests(lines: Mapping[float, Sequence[Lines]]) -> tuple[Test, Test]:
 
 
 def make_mixed(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
-    """The fitness of foragers against their frequency, and whether each type invades the other."""
+    """Makes the figure and tables of foragers' fitness against their frequency, and of whether each type invades."""
     question = "Are foragers and trackers each fitter where they are rare?"
     lines = {
         share: [lines_of(world) for world in inputs.worlds[condition.label]]
@@ -84,7 +84,7 @@ def make_mixed(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
 def is_clustered(world: WorldRecord) -> bool | None:
     """Whether the gene is further from one mode than every neutral gene of the same agents; None with too few agents.
 
-    Relatives are alike in all genes, so that neutral genes have clusters too: they are what drift does.
+    Relatives are similar in all genes, so neutral genes have clusters too, which are the effect of drift.
     """
     agents = last_agents(world.agents)
     if agents.height < FEWEST:
@@ -97,7 +97,7 @@ def is_clustered(world: WorldRecord) -> bool | None:
 
 
 def cluster_test(rows: Sequence[dict[str, Any]]) -> Test:
-    """Whether more worlds have clusters than if the gene were as neutral as those that it is compared with."""
+    """Tests whether more worlds have clusters than if the gene were neutral, like those that it is compared with."""
     known = [row for row in rows if row["clusters"] is not None]
     chance = 1 / (1 + rows[0]["neutral genes"]) if rows else 1.0
     count, gone = (sum(row[name] for row in known) for name in ("clusters", "died out"))
@@ -107,7 +107,7 @@ def cluster_test(rows: Sequence[dict[str, Any]]) -> Test:
 
 
 def make_evolved(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
-    """Whether two kinds of genomes evolve in one world."""
+    """Makes the figure and tables on whether two kinds of genomes evolve in one world."""
     rows = [
         {
             "seed": world.seed,

@@ -2,7 +2,7 @@
 
 `python -m hedon_studies.same_genes_another_learner.evolution worlds RUN… --out FOLDER` reduces runs to two tables:
 `worlds.csv`, a row per world, and `living.parquet`, the genes of the agents alive at the end.
-`python -m hedon_studies.same_genes_another_learner.evolution tests FOLDER` prints the tests that expected.md names.
+`python -m hedon_studies.same_genes_another_learner.evolution tests FOLDER` prints the tests named in expected.md.
 """
 
 import argparse
@@ -65,14 +65,19 @@ def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
 
 
 def living(world: WorldRecord) -> pl.DataFrame:
-    """The rows of `living.parquet` from one world: the genes of the agents alive at the end."""
+    """The rows of `living.parquet` for one world: the genes of the agents alive at the end."""
     genes = last_living(world.agents, world.population).select(pl.col(world.weight_names).cast(pl.Float32))
     rate = pl.lit(world.own.learning.learning_rate).alias("learning_rate")
     return genes.select(rate, pl.lit(world.seed, pl.Int32).alias("seed"), pl.all())
 
 
 def reduce_runs(folders: Iterable[Path], out: Path) -> None:
-    """Writes the two tables of some runs."""
+    """Reduces some runs to the two tables.
+
+    Args:
+        folders: Folders of the runs.
+        out: Folder of the tables.
+    """
     rows: list[dict[str, Any]] = []
     genes: list[pl.DataFrame] = []
     for folder in folders:
@@ -98,7 +103,12 @@ def pairs(worlds: pl.DataFrame) -> pl.DataFrame:
 
 
 def direction(paired: pl.DataFrame, arm: str, gene: str = SIGHT) -> Floats:
-    """The direction of the mean evolved reward: the angle of (food, sight), 0 if only food is liked.
+    """The direction of the mean evolved reward: the angle of (food, sight), which is 0 if only food is liked.
+
+    Args:
+        paired: Rows from `pairs`.
+        arm: The arm.
+        gene: Genome column to use for sight.
 
     Returns:
         One angle per pair [degrees].
@@ -107,12 +117,12 @@ def direction(paired: pl.DataFrame, arm: str, gene: str = SIGHT) -> Floats:
 
 
 def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
-    """The primary test and the secondary ones, in the order of expected.md.
+    """The primary test and the secondary tests, in the order of expected.md.
 
     Returns:
         One row per test: "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test),
-        "p_sign_flip", and "p_holm", which corrects the sign flips, since scores against drift have an upper limit; null
-        for the primary test.
+        "p_sign_flip", and "p_holm". The last corrects the sign-flip tests, since scores against drift have an upper
+        limit; it is null for the primary test.
     """
     paired = pairs(worlds)
     change = direction(paired, "fast") - direction(paired, "slow")
@@ -134,7 +144,7 @@ def neutral_control(worlds: pl.DataFrame) -> pl.DataFrame:
     """The primary test with each neutral gene in place of sight.
 
     Returns:
-        One row per neutral gene, as from `named_test`.
+        One row per neutral gene, with the columns of `named_test`.
     """
     paired = pairs(worlds)
     names = [name for name in worlds.columns if name.startswith("neutral_") and not name.endswith("_score")]

@@ -1,7 +1,7 @@
 """Part A: the fitness of liking the sight of food, and food itself, for six learners with the same founders.
 
-`python -m hedon_studies.same_genes_another_learner.landscape FOLDER` prints the tests that expected.md names. The
-folder holds `founders.parquet`, the genes that all arms share, and `outcomes.parquet`, what became of them in each arm.
+`python -m hedon_studies.same_genes_another_learner.landscape FOLDER` prints the tests named in expected.md. The folder
+contains `founders.parquet`, the genes that all arms share, and `outcomes.parquet`, their outcomes in each arm.
 """
 
 import sys
@@ -27,7 +27,7 @@ ARMS: dict[str, str] = {
 """The setting that each arm changes."""
 SIGHT, FOOD, ACTION = "w_see_normal", "w_normal", "w_action"
 REPEATS = (0.05, 0.16)
-"""Where the mean of the primary test has to be, for the landscapes to repeat the pilots."""
+"""Range in which the mean of the primary test must be for the landscapes to replicate the pilots."""
 CHANGES = (("baseline", "short"), ("baseline", "long"), ("baseline", "normalized"), ("slow", "baseline"))
 HUMPS = ("baseline", "slow", "fast", "short", "long")
 FOUNDERS, OUTCOMES = "founders.parquet", "outcomes.parquet"
@@ -36,7 +36,11 @@ Floats = NDArray[np.float64]
 
 
 def write_arms(arms: Mapping[str, pl.DataFrame], folder: Path) -> None:
-    """Writes the founders of all arms, their genes once.
+    """Writes the founders of all arms, with their genes only once.
+
+    Args:
+        arms: Founders of each arm with their genes and outcomes.
+        folder: Folder of the tables.
 
     Raises:
         ValueError: The founders of two arms differ.
@@ -63,6 +67,11 @@ def read_arms(folder: Path) -> dict[str, pl.DataFrame]:
 def slopes(founders: pl.DataFrame, outcome: str, genes: tuple[str, ...] = (SIGHT, FOOD, ACTION)) -> pl.DataFrame:
     """The slope of relative fitness on each weight, by least squares within each world.
 
+    Args:
+        founders: Founders with their genes and outcomes.
+        outcome: Column of the outcome that measures fitness.
+        genes: Genome columns of the weights.
+
     Returns:
         One row per world: "seed", and the slope on each gene [share of mean fitness per unit of weight]; null in a
         world whose founders all have fitness 0.
@@ -80,10 +89,10 @@ def slopes(founders: pl.DataFrame, outcome: str, genes: tuple[str, ...] = (SIGHT
 
 
 def hump(founders: pl.DataFrame) -> pl.DataFrame:
-    """Relative living descendants of those who like sight strongly, less those who like it moderately.
+    """Relative number of living descendants: founders with a strong liking for sight minus those with a moderate one.
 
     Returns:
-        One row per world: "seed", and "hump", the mean for weights of sight from 1 to 2 less that from 0 to 1.
+        One row per world: "seed", and "hump", the mean for weights of sight from 1 to 2 minus the mean from 0 to 1.
     """
     relative = pl.col("descendants") / pl.col("descendants").mean().over("seed")
     liking = founders.with_columns(relative=relative).filter(pl.col(FOOD) > 0)
@@ -94,7 +103,12 @@ def hump(founders: pl.DataFrame) -> pl.DataFrame:
 
 
 def direction_change(before: pl.DataFrame, after: pl.DataFrame, outcome: str = "food") -> Floats:
-    """The change of the slope on sight less that of the slope on food, for each pair of worlds of equal seeds.
+    """The change of the slope on sight minus the change of the slope on food, for each pair of worlds of equal seeds.
+
+    Args:
+        before: Founders in the first arm.
+        after: Founders in the second arm.
+        outcome: Column of the outcome that measures fitness.
 
     Returns:
         One value per pair, by seed [share of mean fitness per unit of weight], shape (pairs,).
@@ -105,7 +119,7 @@ def direction_change(before: pl.DataFrame, after: pl.DataFrame, outcome: str = "
 
 
 def named_tests(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
-    """The primary test and the nine secondary ones, in the order of expected.md.
+    """The primary test and the nine secondary tests, in the order of expected.md.
 
     Returns:
         One row per test: "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test),
@@ -119,10 +133,10 @@ def named_tests(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 
 def neutral_control(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
-    """How often a neutral gene, added to the regression, has a slope whose 95 % interval over worlds leaves out 0.
+    """How often a neutral gene, added to the regression, has a slope whose 95 % interval over worlds excludes 0.
 
     Returns:
-        One row per arm: "arm", "genes", and "excluding_0", for how many genes the interval leaves out 0.
+        One row per arm: "arm", "genes", and "excluding_0", the number of genes whose interval excludes 0.
     """
     rows: list[dict[str, Any]] = []
     for name, founders in arms.items():

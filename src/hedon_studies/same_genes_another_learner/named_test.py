@@ -1,4 +1,4 @@
-"""The test that all parts of the study use: is the mean over worlds, or over pairs of worlds, 0?"""
+"""The test in all parts of the study: is the mean over worlds, or over pairs of worlds, 0?"""
 
 from typing import Any
 
@@ -15,8 +15,8 @@ def named_test(name: str, values: NDArray[np.float64]) -> dict[str, Any]:
     """Tests whether the mean of some values is 0.
 
     Args:
-        name: What expected.md calls the test.
-        values: One per world or pair of worlds, shape (worlds,).
+        name: Name of the test in expected.md.
+        values: Value of each world or pair of worlds, shape (worlds,).
 
     Returns:
         "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test) and "p_sign_flip".

@@ -1,1 +1,1 @@
-"""Numbers that only this study needs, one question per file."""
+"""Analyses of this study, one question per file."""

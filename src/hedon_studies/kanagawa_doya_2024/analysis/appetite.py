@@ -1,8 +1,9 @@
 """How large must the weight of food be before an agent eats well?
 
-Foods eaten over steps lived, for agents that differ in their inherited weight. Only the dead have known counts, and
-those with short lives had no time to learn: a life must have `WINDOWS` windows of learning. Agents with larger weights
-were mostly born later, into other company; what is shown is who eats how much, not what the weight alone would do.
+Computes foods eaten per step lived, for agents that differ in their inherited weight. Counts are known only for dead
+agents, and agents with short lives had no time to learn, so a life must have `WINDOWS` windows of learning. Agents with
+larger weights were mostly born later, among other agents. The result is therefore an association, not the causal effect
+of the weight.
 """
 
 from collections.abc import Sequence
@@ -16,9 +17,9 @@ from hedon.analysis import WorldRecord, dead_agents
 
 WINDOWS = 5
 EDGES = (-10.0, -3.0, -1.0, -0.3, -0.1, 0.0, 0.1, 0.3, 1.0, 3.0, 10.0)
-"""Of the bins, up to the limit of weights: two to a factor of ten, since what matters spans orders of magnitude."""
+"""Edges of the bins, up to the limit of weights: two per factor of ten, since the effect spans orders of magnitude."""
 FEWEST = 20
-"""Agents that a bin of a world must have to be shown."""
+"""Smallest number of agents for a bin of a world to be shown."""
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,11 @@ class AppetiteBin:
     """The agents of one world with a weight between two bounds.
 
     Attributes:
-        low, high: bounds of the weight; the lower one belongs to the bin.
-        agents: that died after at least `WINDOWS` windows.
-        weight: their median weight.
-        steps: that they lived together [step].
-        eaten: foods per 1000 steps.
+        low, high: Bounds of the weight; the lower bound belongs to the bin.
+        agents: Number of agents that died after at least `WINDOWS` windows.
+        weight: Their median weight.
+        steps: Steps that they lived, summed [step].
+        eaten: Foods eaten per 1000 steps.
     """
 
     low: float
@@ -42,10 +43,15 @@ class AppetiteBin:
 
 
 def appetite(world: WorldRecord, kind: str = "normal", edges: Sequence[float] = EDGES) -> list[AppetiteBin]:
-    """Food eaten by agents of one world, by their weight for it; bins with too few agents are left out.
+    """Food eaten by the agents of one world, by their weight for it; bins with too few agents are left out.
+
+    Args:
+        world: The world.
+        kind: Food kind.
+        edges: Edges of the bins, in ascending order.
 
     Returns:
-        A bin for each pair of neighboring edges, of the dead that lived for `WINDOWS` windows of learning or longer.
+        A bin for each pair of neighboring edges, with the dead that lived for at least `WINDOWS` windows of learning.
     """
     least = WINDOWS * world.config.world.rollout_steps
     lives = dead_agents(world.agents).filter(pl.col("lifetime") >= least)
@@ -63,12 +69,13 @@ def appetite(world: WorldRecord, kind: str = "normal", edges: Sequence[float] = 
 
 
 def half_way_weight(bins: Sequence[AppetiteBin]) -> float | None:
-    """The weight at which agents eat half-way between those with negative weights and those of the best bin.
+    """The weight at which agents eat half-way between agents with negative weights and those of the best bin.
 
-    Linear between the median weights of the last bin below that rate, short of the best, and the next one.
+    It is interpolated linearly between the median weights of the last bin below that rate, up to the best, and the next
+    bin.
 
     Returns:
-        None where no bin is of negative weights, or the best is.
+        The weight; None if no bin has negative weights, or the best bin does.
     """
     averse = [b for b in bins if b.high <= 0]
     best = max(range(len(bins)), key=lambda i: bins[i].eaten, default=0)

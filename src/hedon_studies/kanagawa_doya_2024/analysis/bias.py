@@ -1,13 +1,14 @@
 """Does a gene drift where the mean of a world's mutations pushes it?
 
-Each generation of a line adds one mutation. A line without selection draws it from the births as they happen, so its
-weight moves by their mean mutation, the *bias*, in each generation. Frozen noise gives all windows the same table, so
-its bias lasts and carries the weight along. With independent noise there is a mean too, but of mutations that happened
-once: it shrinks as births add up, since the limit of weights bounds each, and says nothing of the next.
+Each generation of a line adds one mutation. In a line without selection, the mutation is a random one of all births, so
+the weight moves in each generation by their mean mutation, the *bias*. Frozen noise uses the same table in all windows,
+so its bias persists and drives the weight. With independent noise the births also have a mean mutation, but it averages
+mutations that happened only once. It shrinks as births accumulate, since the limit of weights bounds each of them, and
+it does not predict later mutations.
 
-Three comparisons of a prediction with what was seen, one pair per world and gene: the bias with the drift per
-generation; the weight that lines without selection have after as many generations, limit included, with the
-weight of those born last; the bias of the first half of a run with that of the second.
+There are three comparisons of a prediction with an observation, with one pair per world and gene: the bias and the
+drift per generation; the weight of lines without selection after as many generations, including the limit, and the
+weight of the agents born last; the bias of the first half of a run and of its second half.
 """
 
 import math
@@ -33,26 +34,31 @@ COMPARISONS = {
     "weight at the end": ("line_mean", "end"),
     "bias, first half and second": ("bias_first", "bias_second"),
 }
-"""What is compared: columns of a `Drift`, what is predicted first."""
+"""Columns of a `Drift` to compare, the predicted one first."""
 
 
 Drift = dict[str, Any]
-"""One gene of one world, predicted and seen, as `gene_drift` gives it."""
+"""Predicted and observed drift of one gene in one world, from `gene_drift`."""
 
 
 def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Drift | None:
-    """Predicts where mutation alone carries a gene, and compares it with what happened.
+    """Predicts where mutation without selection drives a gene, and compares it with the records.
+
+    Args:
+        world: The world.
+        weight: Genome column of the gene.
+        rng: Source of random numbers.
 
     Returns:
-        weight, the genome column; births, with a known mutation; numbers of births within a window, so entries of the
-        table; bounds, entries of which only a lower bound is known, since all their children were clipped;
-        disagreement, the largest difference between births of equal number that were not clipped; is_table, whether
-        they agree, so that there is a table; bias, the mean mutation per birth; bias_first and bias_second, the same
-        over the births of either half of the record; line_mean, the mean weight of lines without selection after
-        `generations`; line_low and line_high, bounds that 95 % of them lie between; slope of the mean weight of the
-        living against their mean generation, over the run; displacement, (mean weight of the living at the end − mean
-        of the founders' law) / generations; end, the mean weight of the 5000 agents born last; generations, their mean.
-        NaN for what has no value; None where no birth is recorded.
+        weight, the genome column; births, the number with a known mutation; numbers, the count of birth numbers within
+        a window and thus of table entries; bounds, the count of entries of which only a lower bound is known, since all
+        their children were clipped; disagreement, the largest difference between births of equal number that were not
+        clipped; is_table, whether they agree, so that there is a table; bias, the mean mutation per birth; bias_first
+        and bias_second, the same over the births of either half of the record; line_mean, the mean weight of lines
+        without selection after `generations`; line_low and line_high, the bounds of 95 % of them; slope, of the mean
+        weight of the living against their mean generation, over the run; displacement, (mean weight of the living at
+        the end − mean of the founders' distribution) / generations; end, the mean weight of the 5000 agents born last;
+        generations, their mean. Missing values are NaN; the result is None if no birth is recorded.
     """
     found = mutations(world, weight)
     if not len(found.change):
@@ -90,17 +96,21 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Dri
 
 
 def compare(drifts: Sequence[Drift], comparison: str) -> dict[str, Any]:
-    """Correlates what is predicted with what is seen, over worlds and genes.
+    """Correlates predicted and observed values over worlds and genes.
+
+    Args:
+        drifts: Predicted and observed drift of genes.
+        comparison: Key of `COMPARISONS`.
 
     Returns:
-        What `prediction` gives.
+        The result of `prediction`.
     """
     predicted, seen = COMPARISONS[comparison]
     return prediction((d[predicted] for d in drifts), (d[seen] for d in drifts))
 
 
 def _pool(found: Mutations, table: NoiseTable) -> Floats:
-    """The mutations of all births: from the table, where there is one, which clipping does not shorten."""
+    """The mutations of all births, taken from the table if there is one, since clipping does not shorten those."""
     return table.value[found.number] if table.is_one else found.change
 
 
@@ -112,7 +122,7 @@ def _half_biases(world: WorldRecord, found: Mutations, table: NoiseTable) -> tup
 
 
 def _observed(population: pl.DataFrame, weight: str, start: float) -> tuple[float, float]:
-    """Slope of the mean weight against the mean generation, and displacement per generation."""
+    """The slope of the mean weight against the mean generation, and the displacement per generation."""
     known = population.drop_nulls(["generation_mean", f"{weight}_mean"])
     generation, mean = (known[name].to_numpy().astype(np.float64) for name in ("generation_mean", f"{weight}_mean"))
     if len(generation) < 2 or np.ptp(generation) == 0:

@@ -1,14 +1,17 @@
-"""Is a world heading for extinction? The rule, stated before any world was looked at.
+"""Is a world heading for extinction? The rule was fixed before any world was examined.
 
-A world *heads for extinction* if it died out, or if fewer than half as many agents are alive over its last tenth as
-over its second tenth, both means over steps.
+A world *heads for extinction* if it died out, or if its number of agents alive, averaged over the last tenth of its
+steps, is less than half of the average over the second tenth.
 
-Why: worlds start with a few founders and have filled up by the end of the first tenth (some 100,000 of a million steps,
-fifteen lives of the paper's baseline), so the second tenth is what a world can hold while its weights are still
-near their start; a loss of half is large, and needs no trend that would have to go on for nine more runs to kill.
-The price: numbers of starving worlds swing, some by half within 100,000 steps, so a world may be hit on its way
-through a low, or stay at half for good, and one that has only begun to fall is missed. How many worlds had such a low
-before and *recovered* says how far the rule can be trusted; it was not changed for what it gave.
+Reasons: worlds start with a few founders and have filled up by the end of the first tenth (about 100,000 of a million
+steps, or fifteen lifetimes of the paper's baseline). The second tenth therefore shows how many agents a world can
+sustain while its weights are still near their start. A loss of half is large, whereas a trend might have to continue
+for nine more runs before the world dies out.
+
+Drawbacks: numbers in starving worlds fluctuate, some by half within 100,000 steps. A world may be classified during a
+temporary low, or may stay at half permanently, and a world whose decline has just started is missed. The number of
+worlds that had such a low earlier and *recovered* shows how far the rule can be trusted. The rule was not changed after
+its results were known.
 """
 
 from dataclasses import dataclass
@@ -19,7 +22,7 @@ import polars as pl
 from hedon.analysis import WorldRecord, mean_alive
 
 LOST = 0.5
-"""A world whose last tenth has less than this share of its second tenth heads for extinction."""
+"""Share of the second tenth below which the last tenth means that a world heads for extinction."""
 EXTINCT, HEADING, STANDING = "extinct", "heading for extinction", "standing"
 FATES = (STANDING, HEADING, EXTINCT)
 _TENTHS = 10
@@ -27,14 +30,14 @@ _TENTHS = 10
 
 @dataclass(frozen=True)
 class Fate:
-    """What becomes of one world.
+    """The fate of one world.
 
     Attributes:
-        fate: one of `FATES`.
-        early: agents alive, mean over the second tenth; None where nothing is recorded there.
-        late: the same over the last tenth.
+        fate: One of `FATES`.
+        early: Mean number of agents alive over the second tenth; None if nothing is recorded there.
+        late: Mean number of agents alive over the last tenth.
         kept: late / early.
-        recovered: whether it stands, but would have been called lost by one of the tenths before the last.
+        recovered: Whether the world is not lost, but would have been called lost in a tenth before the last.
     """
 
     fate: str

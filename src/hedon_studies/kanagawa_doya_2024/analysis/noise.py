@@ -1,10 +1,10 @@
-"""The table of tabulated mutation noise, read off the records of a world.
+"""Recovers the table of tabulated mutation noise from the records of a world.
 
-With `world.mutation_noise = "tabulated"` a birth's mutation of a gene depends on the seed, the gene and the number of
-the birth (`walk.birth_number`). So the change from parent to child shows the table, but for children clipped at
-the limit of weights. Weights are float32, so equal mutations agree to the rounding of a weight: 1e-6 at 10.
+With `world.mutation_noise = "tabulated"`, the mutation of a gene depends on the seed, the gene and the number of
+the birth (`walk.birth_number`). The change from parent to child therefore shows the table, except for children clipped
+at the limit of weights. Weights are float32, so equal mutations agree to the rounding of a weight: 1e-6 at 10.
 
-With independent noise the same computation gives no table, and births of equal number disagree as much as any.
+With independent noise there is no table, and births of equal number differ as much as any others.
 """
 
 from dataclasses import dataclass
@@ -18,21 +18,22 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _NEAR = 1e-6
-"""Weights this near to the limit, as a share of it, count as clipped."""
+"""Distance from the limit, as a share of it, within which weights count as clipped."""
 _SAME = 2.0
-"""Spacings of float32 at the limit up to which changes are one mutation: each is rounded by half of one, or less."""
+"""Largest difference between changes by one mutation, in float32 spacings at the limit; each is rounded by half of one
+or less."""
 
 
 @dataclass(frozen=True, eq=False)
 class Mutations:
-    """How one gene changed at the births of a world, in their order.
+    """The changes of one gene at the births of a world, in order.
 
     Attributes:
-        birth_step: of each [step], (n,).
-        number: of each birth, see `walk.birth_number`, (n,).
-        change: child's weight − parent's, (n,).
-        clipped: whether the child's was clipped, so that the mutation was larger than the change, (n,).
-        rounding: distance of neighboring weights at the limit.
+        birth_step: Step of each birth [step], shape (n,).
+        number: Number of each birth, see `walk.birth_number`, shape (n,).
+        change: Weight of the child minus that of its parent, shape (n,).
+        clipped: Whether the child's weight was clipped, so that the mutation exceeded the change, shape (n,).
+        rounding: Spacing of float32 weights at the limit.
     """
 
     birth_step: Ints
@@ -47,12 +48,12 @@ class NoiseTable:
     """Mutations by number of birth.
 
     Attributes:
-        value: of each number: the median change of births that were not clipped. Where all were, the largest of their
-            changes, a lower bound of the mutation's size; NaN for a number that no birth has, (k,).
-        births: of each number, (k,).
-        bound: whether the value is such a bound, (k,).
-        disagreement: largest difference between births of equal number that were not clipped.
-        is_one: whether they agree to rounding, as with tabulated noise.
+        value: Mutation of each number, shape (k,): the median change of births that were not clipped. If all were, the
+            largest of their changes, which is a lower bound of the mutation's size; NaN for a number without births.
+        births: Number of births with each number, shape (k,).
+        bound: Whether the value is such a lower bound, shape (k,).
+        disagreement: Largest difference between births of equal number that were not clipped.
+        is_one: Whether they agree to rounding, as with tabulated noise.
     """
 
     value: Floats
@@ -65,7 +66,11 @@ class NoiseTable:
 def mutations(world: WorldRecord, weight: str) -> Mutations:
     """All recorded mutations of one gene.
 
-    Births after a gap in the records have no known number, so only those before the first are taken.
+    The number of births is unknown after a gap in the records, so only births before the first gap are used.
+
+    Args:
+        world: The world.
+        weight: Genome column of the gene.
     """
     whole = np.cumprod(world.agents["agent_id"].to_numpy() == np.arange(world.agents.height)).sum()
     agents = world.agents.head(int(whole))
@@ -80,7 +85,7 @@ def mutations(world: WorldRecord, weight: str) -> Mutations:
 
 
 def noise_table(found: Mutations) -> NoiseTable:
-    """The table that some mutations show."""
+    """The noise table that explains some mutations."""
     size = int(found.number.max(initial=-1)) + 1
     value, spread = np.full(size, np.nan), np.zeros(size)
     births = np.bincount(found.number, minlength=size)

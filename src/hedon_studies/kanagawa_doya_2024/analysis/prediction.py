@@ -1,4 +1,4 @@
-"""How well does a prediction agree with what was seen? Correlations, a slope through the origin, equal signs."""
+"""How well does a prediction agree with observations? Correlations, a slope through the origin, and equal signs."""
 
 import math
 from collections.abc import Iterable
@@ -13,17 +13,21 @@ stats: Any = load("scipy.stats", suppress_warning=True)
 
 NAN = math.nan
 FEWEST = 3
-"""Pairs that a correlation and a slope need at least."""
+"""Smallest number of pairs for a correlation and a slope."""
 
 
 def prediction(predicted: Iterable[float], seen: Iterable[float]) -> dict[str, Any]:
-    """Compares pairs; those without both values are left out.
+    """Compares pairs of values; pairs with a missing value are left out.
+
+    Args:
+        predicted: Predicted values.
+        seen: Observed values, in the same order.
 
     Returns:
-        pairs, that have both values; correlation, Pearson's; rank_correlation, Spearman's, which a single large table
-        does not rule; slope of seen = slope · predicted, by least squares through the origin, with low and high, bounds
-        of its 95 % interval, Student's t; same_sign, pairs of equal sign; p_sign, the two-sided chance of a count this
-        far from half if signs were tosses of a coin, exact binomial. NaN with fewer than three pairs.
+        pairs, the number with both values; correlation, Pearson's; rank_correlation, Spearman's, which a single large
+        table does not dominate; slope of seen = slope · predicted, by least squares through the origin, with low and
+        high, the bounds of its 95 % interval (Student's t); same_sign, the number of pairs with equal signs; p_sign,
+        the two-sided p value of an exact binomial test that signs agree at random. NaN with fewer than three pairs.
     """
     x, y = (np.array(list(values), np.float64) for values in (predicted, seen))
     known = np.isfinite(x) & np.isfinite(y)

@@ -1,4 +1,4 @@
-"""Figures that only this study draws, one question per file."""
+"""Figures of this study, one question per file."""
 
 from lazy_loader import attach_stub
 

@@ -1,4 +1,4 @@
-"""How well do agents eat that like food more or less, and when did they come to like it?"""
+"""How much do agents eat depending on their liking for food, and when did that liking evolve?"""
 
 from collections.abc import Mapping, Sequence
 
@@ -26,9 +26,13 @@ _TICKS = (-10, -1, -0.1, 0, 0.1, 1, 10)
 
 
 def draw_appetite(bins: Mapping[str, Sequence[Sequence[AppetiteBin]]], histories: Mapping[str, pl.DataFrame]) -> Figure:
-    """Left: foods per 1000 steps against the weight of food, by condition; right: its mean over time.
+    """Draws foods per 1000 steps against the weight of food, by condition, and the mean of that weight over time.
 
-    Thin lines are worlds; thick lines are means over the worlds, where more than half of them have the bin.
+    Thin lines are worlds; thick lines are means over worlds, for bins that more than half of them have.
+
+    Args:
+        bins: Bins of each world, by condition.
+        histories: Mean weight over time, by condition.
     """
     with styled():
         figure = new_figure(9.0, 3.5)
@@ -63,7 +67,7 @@ def _draw_history(axes: Axes, histories: Mapping[str, pl.DataFrame]) -> None:
 
 
 def _mean(worlds: Sequence[Sequence[AppetiteBin]]) -> tuple[np.ndarray, np.ndarray]:
-    """Means over worlds of the bins that more than half of them have."""
+    """Means over worlds, for bins that more than half of them have."""
     by_low: dict[float, list[AppetiteBin]] = {}
     for world in worlds:
         for part in world:

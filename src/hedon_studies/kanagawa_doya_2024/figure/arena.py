@@ -1,4 +1,4 @@
-"""What arenas are there, and where does food grow in each?"""
+"""What do the arenas look like, and where does food grow in each?"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ _WIDTH = 9.0  # of the figure [inch]
 _GAP = 0.16  # between panels [inch]
 _HEAD = 0.66  # above each panel, for its title [inch]
 _FOOT = 0.1  # below the last row [inch]
-_DEVIATIONS = (1, 2)  # standard deviations at which ellipses lie around a center of food
+_DEVIATIONS = (1, 2)  # standard deviations at which ellipses are drawn around a center of food
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class ArenaPanel:
     """One arena.
 
     Attributes:
-        label: its heading.
-        config: the settings.
-        snapshot: a world in it; None where there was no run.
+        label: Heading of the panel.
+        config: Settings of the arena.
+        snapshot: A world in the arena; None if there is no run.
     """
 
     label: str
@@ -35,9 +35,9 @@ class ArenaPanel:
 
 
 def draw_arenas(rows: Sequence[Sequence[ArenaPanel]]) -> Figure:
-    """Draws arenas side by side at one scale: walls, agents, foods, and the law by which food is placed.
+    """Draws arenas side by side at the same scale: walls, agents, foods, and the distribution of places of food.
 
-    Above each stand its size and numbers, and of each kind of food its energy and the most that the supply holds.
+    The heading of each gives its size and numbers, and for each food kind its energy and largest supply.
     """
     columns = max(len(rows[0]) + 1, *(len(row) for row in rows))
     cell = (_WIDTH - _GAP) / columns
@@ -46,7 +46,7 @@ def draw_arenas(rows: Sequence[Sequence[ArenaPanel]]) -> Figure:
     height = sum(tallest) + _HEAD * len(rows) + _FOOT
     with styled():
         figure = new_figure(_WIDTH, height)
-        figure.set_layout_engine("none")  # which would stretch panels to different scales
+        figure.set_layout_engine("none")  # it would stretch panels to different scales
         top = height
         for row, tall in zip(rows, tallest, strict=True):
             top -= _HEAD
@@ -92,11 +92,11 @@ def _draw_panel(axes: Axes, panel: ArenaPanel) -> None:
     axes.set(xlim=(0, width), ylim=(0, height))
     axes.axis("off")
     for artist in axes.get_children():
-        artist.set_clip_on(False)  # half of a wall's line lies outside
+        artist.set_clip_on(False)  # half the width of a wall is outside
 
 
 def _draw_placement(axes: Axes, placement: PlacementConfig, color: str) -> None:
-    """Ellipses around each center; arrows from center to center where food moves on."""
+    """Draws ellipses around each center, and arrows between centers if food moves."""
     if placement.form == "uniform":
         return
     if placement.form == "rectangle":

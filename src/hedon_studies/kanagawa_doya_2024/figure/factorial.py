@@ -1,4 +1,4 @@
-"""Which factors change a world, alone and together? The cells of a factorial design and its effects."""
+"""Which factors and interactions change a world? The cells of a factorial design and its effects."""
 
 from collections.abc import Sequence
 
@@ -16,14 +16,19 @@ _COLUMNS = 3
 _WIDTH = 9.0
 _ROW = 0.26  # height of a line of a panel [inch]
 _SPREAD = 0.28  # of the worlds of a cell, to either side of its line
-_REACH = 2.0  # widths of the estimates' own range beyond which intervals are cut off
-_WIDE = 4.0  # an axis of ratios is logarithmic where the largest value is this many times the least, or more
+_REACH = 2.0  # intervals are cut off at this many widths of the range of estimates
+_WIDE = 4.0  # an axis of ratios is logarithmic if the largest value is at least this many times the smallest
 
 
 def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], measures: Sequence[Measure]) -> Figure:
-    """A panel per measure, a line per cell: a point per world, a bar for their mean.
+    """Draws a panel per measure and a line per cell, with a point per world and a bar for their mean.
 
     Means of measures that are compared as ratios are geometric. Hollow points are worlds that died out.
+
+    Args:
+        worlds: A row per world.
+        conditions: Labels of the cells.
+        measures: The measures.
     """
     with styled():
         figure, panels = _panels(measures, conditions)
@@ -53,10 +58,15 @@ def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], measures: Sequen
 
 
 def draw_effects(effects: pl.DataFrame, names: Sequence[str], measures: Sequence[Measure]) -> Figure:
-    """A panel per measure, a line per effect: the estimate, its 95 % interval, and the same in single seeds.
+    """Draws a panel per measure and a line per effect: the estimate, its 95 % interval, and estimates of single seeds.
 
-    The vertical line is where nothing is changed: 0, or a ratio of 1. Filled points are effects whose corrected
-    p is at most 0.05. An interval that reaches far beyond the estimates is cut off at an arrow.
+    The vertical line marks no effect: 0, or a ratio of 1. Filled points are effects whose corrected
+    p is at most 0.05. An interval that extends far beyond the estimates is cut off at an arrow.
+
+    Args:
+        effects: A row per effect and measure.
+        names: Names of the effects.
+        measures: The measures.
     """
     with styled():
         figure, panels = _panels(measures, names)
@@ -84,7 +94,7 @@ def draw_effects(effects: pl.DataFrame, names: Sequence[str], measures: Sequence
 
 
 def _panels(measures: Sequence[Measure], lines: Sequence[str]) -> tuple[Figure, list[Axes]]:
-    """A grid of panels that share the names of their lines, which stand at the left; and only as many as needed."""
+    """A grid with one panel per measure; the names of the lines are shared and written at the left."""
     rows = -(-len(measures) // _COLUMNS)
     figure = new_figure(_WIDTH, rows * (0.95 + _ROW * max(len(lines), 2)) + 0.3)
     panels = figure.subplots(rows, _COLUMNS, sharey=True, squeeze=False).ravel().tolist()
@@ -122,7 +132,7 @@ def _draw_effect(axes: Axes, line: int, row: dict, low: float, high: float) -> N
 
 
 def _reach(rows: pl.DataFrame, measure: Measure) -> tuple[float, float]:
-    """The limits of the axis: all estimates and seeds, and of the intervals what is not much wider."""
+    """The limits of the axis, which include all estimates and seeds, and intervals that are not much wider."""
     neutral = 1.0 if measure.ratio else 0.0
     inner = _known(rows, ("estimate", "seed_low", "seed_high"), neutral)
     outer = _known(rows, ("low", "high"), neutral)
@@ -144,7 +154,7 @@ def _known(rows: pl.DataFrame, names: Sequence[str], neutral: float) -> np.ndarr
 
 
 def _scale(axes: Axes, low: float, high: float) -> None:
-    """A logarithmic axis where the values span a range wide enough for few, round ticks."""
+    """Makes the axis logarithmic if the range of values is wide enough for a few round ticks."""
     if high < _WIDE * low:
         axes.xaxis.set_major_locator(MaxNLocator(5))
         return

@@ -1,4 +1,4 @@
-"""Which worlds last, and where do their weights go?"""
+"""Which worlds survive, and how do their weights change?"""
 
 from collections.abc import Sequence
 
@@ -25,9 +25,13 @@ _POINTS = 100
 
 
 def draw_fates(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Figure:
-    """Agents alive, weight of food, weight of action and neutral gene over time: a line per world, colored by fate.
+    """Draws agents alive, weight of food, weight of action and neutral gene over time: a line per world, by fate.
 
-    A cross marks where a world ends before the longest.
+    A cross marks the end of a world that is shorter than the longest.
+
+    Args:
+        worlds: The worlds.
+        fates: Fate of each world, which sets its color.
     """
     populations = [world.population.with_columns(world=pl.lit(i, pl.Int32)) for i, world in enumerate(worlds)]
     names = ("w_normal", "w_action", "neutral_1")

@@ -1,4 +1,4 @@
-"""Does a gene go where its world's mutations push it? Predicted against seen, a point per world."""
+"""Does a gene move where its world's mutations push it? Predicted against observed values, a point per world."""
 
 from collections.abc import Mapping, Sequence
 
@@ -18,11 +18,16 @@ _LABELS = {
     "bias, first half and second": ("mean mutation, first half", "mean mutation, second half"),
 }
 _LINEAR = 0.003
-"""Below this an axis of mutations is linear; above, logarithmic, since Cauchy numbers span orders of magnitude."""
+"""Size below which an axis of mutations is linear; above, it is logarithmic, since Cauchy noise spans magnitudes."""
 
 
 def draw_predictions(conditions: Mapping[str, Sequence[Drift]], titles: Mapping[str, str]) -> Figure:
-    """A panel per comparison; a color per condition, a mark per gene. The line is where both are equal."""
+    """Draws a panel per comparison, a color per condition and a mark per gene. The line marks equal values.
+
+    Args:
+        conditions: Predicted and observed drift of each gene, by condition.
+        titles: Title of each genome column.
+    """
     colors = dict(zip(conditions, _COLORS, strict=False))
     shown = {label: drifts for label, drifts in conditions.items() if drifts}
     with styled():

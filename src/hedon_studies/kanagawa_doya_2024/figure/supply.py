@@ -1,4 +1,4 @@
-"""Do agents eat all that grows? What each eats against how many there are, beside what the supply allows."""
+"""Do agents eat all that grows? Food eaten per agent against the number of agents, compared with the supply."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -12,20 +12,20 @@ from hedon.figure import BLUE, GREEN, INK, MUTED, PALE, VERMILION, new_figure, s
 
 _COLORS = (BLUE, GREEN, VERMILION)
 _ALIVE = (30.0, 260.0)
-"""Numbers alive that are shown, wider where a world lies outside."""
+"""Range of numbers alive, extended if a world is outside."""
 _MARGIN = 1.15
 _LEAST, _MOST = 3e-4, 2e-2
 
 
 @dataclass(frozen=True)
 class Eater:
-    """A world, as the figure shows it.
+    """A world in the figure.
 
     Attributes:
-        condition: panel in which it stands.
-        rule: what its color tells.
-        alive: agents alive.
-        eaten: foods per step lived [1/step].
+        condition: Condition, which sets its panel.
+        rule: Rule, which sets its color.
+        alive: Number of agents alive.
+        eaten: Foods eaten per step lived [1/step].
     """
 
     condition: str
@@ -37,13 +37,13 @@ class Eater:
 def draw_supply(
     eaters: Sequence[Eater], rules: Sequence[str], rates: Mapping[str, float | None], supplies: Sequence[float]
 ) -> Figure:
-    """One panel per condition, both axes logarithmic.
+    """Draws a panel per condition with logarithmic axes.
 
     Args:
-        eaters: the worlds.
-        rules: that color the worlds, three at most.
-        rates: per condition what the paper's agents eat [1/step]; None where it gives no number.
-        supplies: food that grows [food/step], a line each.
+        eaters: The worlds.
+        rules: Rules that set the colors of worlds, three at most.
+        rates: Food eaten by the paper's agents [1/step], by condition; None if the paper gives no number.
+        supplies: Food that grows [food/step], each drawn as a line.
     """
     low = min([_ALIVE[0], *(eater.alive / _MARGIN for eater in eaters)])
     high = max([_ALIVE[1], *(eater.alive * _MARGIN for eater in eaters)])
@@ -71,7 +71,7 @@ def draw_supply(
 
 
 def _draw_lines(axes: Axes, supplies: Sequence[float], rate: float | None) -> None:
-    """What the supplies allow, and what the paper reports."""
+    """The rates that the supplies allow, and the rate that the paper reports."""
     left, right = axes.get_xlim()
     for supply in supplies:
         axes.plot([left, right], [supply / left, supply / right], color=PALE, linewidth=1.4, zorder=1)
