@@ -260,7 +260,7 @@ def _lines(world: WorldRecord, founders: Founders, groups: tuple[str, str], step
     if world.own.birth.mating == "pairs":
         points = points_of(founders, groups, world.species)
         return world_lines(world.agents, world.seed, by_gene(world.agents, *points), steps)
-    before = 0  # founders have ids in the order of their species
+    before = 0  # IDs of founders follow the order of species
     for name, species in world.config.species.items():
         if name == world.species:
             break

@@ -67,7 +67,7 @@ class Stability:
         point: Means of the founders' reward genes, by column.
         worlds: Number of worlds.
         extinct: Number of worlds that died out.
-        generations: Number of generations, averaged over worlds.
+        generations: Generations at the end, averaged over worlds.
         courses: Course of each weight and neutral gene, by column.
         seeds: Seeds of the worlds in the courses.
     """

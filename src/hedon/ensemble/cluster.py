@@ -23,7 +23,7 @@ LOCAL = "local"
 IN_FLIGHT = 4
 """Jobs per processor that are submitted to Ray at a time; more would cost it memory and time."""
 TRIES = 5
-"""How often in a row a job may be lost without progress. Each new checkpoint resets the count."""
+"""How often in a row a job may be started without progress. Each new checkpoint resets the count."""
 _LOOK_SECONDS = 0.5
 
 

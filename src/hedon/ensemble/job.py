@@ -123,7 +123,7 @@ def work(job: Job, threads: int, link: Connection) -> None:
     _leave_terminal()
     Thread(target=_listen, args=(link,), daemon=True).start()
     outcome = attempt(job, threads, _Teller(link).update)
-    with suppress(OSError):  # the parent may have ended; the records on disk are complete
+    with suppress(OSError):  # the parent may have ended; the records on disk show the outcome too
         link.send(outcome)
 
 

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from hedon.figure.style import GRID, INK, PALE, new_figure, seed_color, styled
 
-_NORMAL = 1.96  # standard deviations that hold 95 % of a normal law
+_NORMAL = 1.96  # standard deviations that contain 95 % of a normal distribution
 _LEAST = 3.0  # smallest half range of the axis
 _SPREAD = 0.22  # vertical spread of the worlds of a condition
 

@@ -163,7 +163,7 @@ def _new_keys(keys: Mapping[str, str], others: Mapping[str, str]) -> str:
 
 def _attributes(kind: type) -> str:
     """A table of the attributes of a dataclass, taken from its docstring."""
-    section = cleandoc(kind.__doc__ or "").split("Attributes:\n")[1]  # the indentation that Python 3.13 keeps
+    section = cleandoc(kind.__doc__ or "").split("Attributes:\n")[1]  # Python before 3.13 keeps indentation
     entries: list[str] = []
     for line in section.rstrip().splitlines():
         if line.startswith(" " * 8):
