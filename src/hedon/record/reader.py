@@ -104,7 +104,7 @@ class Run:
     @overload
     def agents(self, *, skip_damaged: bool = False, frame: Literal["pandas"]) -> "pd.DataFrame": ...
     def agents(self, *, skip_damaged: bool = False, frame: FrameName = "polars") -> "pl.DataFrame | pd.DataFrame":
-        """All agents up to one moment: the dead, in the order in which they were written, then the living.
+        """All agents of one moment: the dead, in the order in which they were written, then the living.
 
         While a run is in progress, this is the moment when the living were last written; agents that died later count
         as alive.
