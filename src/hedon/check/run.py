@@ -231,7 +231,7 @@ def _check_tables(folder: _Folder) -> None:
 
 
 def _has_just_begun(folder: _Folder) -> bool:
-    """Whether a run has written nothing yet, or was killed before it did; its first checkpoint follows the living."""
+    """Whether a run may not have written the living yet: it has no checkpoint, which would be written after them."""
     running = folder.manifest is not None and folder.manifest.status == "running"
     return running and not checkpoint_paths(folder.path)
 

@@ -20,7 +20,7 @@ MARGIN = 0.012
 GROWTH = 1.2
 """Factor by which the text may get longer as a world continues."""
 CLOSE = 2.0
-"""Width of the arena shown on each side of a followed agent, in lengths of its rays."""
+"""Width of the part of the arena shown around a followed agent, in lengths of its rays."""
 
 
 class Film:

@@ -181,7 +181,7 @@ def draw_ring(axes: Axes, snapshot: Snapshot, index: int) -> None:
 
 
 def _top_energy(energy: np.ndarray) -> float:
-    """The energy drawn darkest: few agents have more, and at least 40, so that founders differ in poor worlds."""
+    """The energy drawn darkest: few agents have more; at least 40, which newcomers have, even in poor worlds."""
     return max(float(np.quantile(energy, 0.95)), 40.0)
 
 

@@ -2,7 +2,7 @@
 
 There are two separate questions. *Does the claim hold here?* is answered by comparing the interval of our figure with
 the region of the claim. *Do we differ from its source?* is answered by a two-sample test, if the source reports a count
-of worlds. For means it cannot be answered, since sources do not report their spread.
+of worlds. For means it cannot be answered without their spread.
 """
 
 import math
