@@ -98,12 +98,38 @@ processes that are killed, whole reports and sites."""
 SHARES = {"test_calibration.py": 4, "test_combination.py": 3, "test_reference_model.py": 4}
 """Files of which `make test` runs one case of so many, and `make test-more` the others."""
 
+THINNED = {
+    "test_a_copy_goes_on_alone": 4,
+    "test_a_copy_of_driven_worlds_goes_on_alone": 3,
+    "test_a_copy_on_the_device_goes_on_alone": 3,
+    "test_a_damaged_file_ends_no_command_in_a_traceback": 3,
+    "test_a_reader_that_has_enough_is_no_fault": 2,
+    "test_a_resumed_run_is_the_run_left_alone": 3,
+    "test_a_signal_ends_after_the_window_and_keeps_everything": 3,
+    "test_a_signal_ends_it_with_the_code_of_the_shell": 3,
+    "test_a_window_has_the_bits_of_the_native_engine": 3,
+    "test_an_item_is_made_from_no_world_one_and_several": 2,
+    "test_damage_to_files_is_named": 2,
+    "test_damage_to_rows_is_named_also_without_checkpoints": 2,
+    "test_learners_that_scale_and_normalize_have_the_bits_of_the_native_engine": 2,
+    "test_queries_of_two_species_have_the_bits_of_the_native_engine": 2,
+    "test_threads_change_no_bit": 4,
+    "test_unit_defines_only_its_table": 2,
+    "test_values_that_no_run_has_end_no_command_in_a_traceback": 2,
+}
+"""Tests of which `make test-more` runs one case of so many, and `make test-long` the others."""
+
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Marks the tests of `make test-more`; long files come first, so that workers finish together."""
-    seen = dict.fromkeys(SHARES, 0)
+    seen = dict.fromkeys((*SHARES, *THINNED), 0)
     for item in items:
+        name = getattr(item, "originalname", item.name)
+        if name in THINNED:
+            if seen[name] % THINNED[name]:
+                item.add_marker(pytest.mark.long)
+            seen[name] += 1
         path = item.path.relative_to(TESTS).as_posix()
         if path.startswith(MORE) and item.get_closest_marker("smoke") is None:
             item.add_marker(pytest.mark.more)

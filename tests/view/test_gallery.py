@@ -104,6 +104,7 @@ def addresses() -> dict[str, str]:
 @pytest.mark.skipif(
     not {"avx2", "avx512"} & set(_engine.kernel.kernel_names()), reason="this processor does not fuse multiply-adds"
 )
+@pytest.mark.long
 def test_the_gallery_has_the_bits_of_the_engine():
     def section(name: str, place: Place) -> str:
         shown = f"![{place.title}]({name}.png)\n\n{place.sentence}"

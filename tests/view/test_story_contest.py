@@ -201,7 +201,7 @@ def test_the_score_counts_descendants_and_a_press_on_the_map_chooses(article):
 
 
 @pytest.mark.parametrize(
-    "world", ["poison", "predators", *(pytest.param(name, marks=pytest.mark.long) for name in ("seasons", "pitfalls"))]
+    "world", ["poison", *(pytest.param(name, marks=pytest.mark.long) for name in ("predators", "seasons", "pitfalls"))]
 )
 def test_the_sandbox_has_worlds_that_are_those_of_python(world, article):
     watched = article("sandbox")

@@ -16,6 +16,7 @@ WINDOW = 1024
 ROUNDS = 80
 
 
+@pytest.mark.long
 def test_meals_are_counted_where_rounds_end_however_fast_the_machine_is(article):
     """All in one order, as on a machine without limits: the engine in Python has the same numbers."""
     watched = article("learning")
