@@ -86,6 +86,8 @@ def test_the_article_is_small():
     assert sum(sizes.values()) + told < 600_000
     assert page_files()["hero.gz"].stat().st_size < 300_000, "loaded after the first picture"
     assert page_files()["hero.jpg"].stat().st_size < 130_000
+    stills = [page_files()[f"still/{name}.jpg"].stat().st_size for name in TEXTS]
+    assert max(stills) < 50_000, "loaded only where a world cannot run"
 
 
 def test_the_numbers_of_the_contest_are_those_of_the_committed_results():

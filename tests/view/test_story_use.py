@@ -3,6 +3,7 @@
 import time
 
 import pytest
+from story_page import STAGES
 from view_page import Watched, live_server, run_live, run_server, serving, sized
 
 from hedon.view.story import PAGE
@@ -24,6 +25,10 @@ def test_without_graphics_the_text_and_the_recording_stay(story_site, browser):
     assert set(said) == {"This scene cannot be shown: this browser has no WebGL2."}
     assert page.evaluate("Object.keys(hedon.scenes)") == []
     assert page.locator("#learning p").first.inner_text()
+    for name in STAGES:
+        picture = page.locator(f"#{name} .view img")
+        picture.scroll_into_view_if_needed()
+        assert picture.evaluate("(each) => each.decode().then(() => each.naturalWidth)") == 640, name
     assert page.locator("#notice").is_hidden()
     page.close()
 
@@ -38,10 +43,12 @@ def test_a_world_that_cannot_run_says_so_in_its_arena_and_can_be_tried_again(sto
     fault.wait_for(timeout=60_000)
     assert fault.inner_text().startswith("This world stopped: ")
     assert page.locator("#family .clock").inner_text() == "step 0"
+    assert page.locator("#family .view img").is_visible()
     page.unroute("**/*.wasm")
     fault.get_by_role("button", name="Try again").click()
     page.wait_for_selector("#family .fault", state="hidden")
     ready = "hedon.scenes.family.stage.live.ready && hedon.scenes.family.stage.live.last > 0"
+    assert page.locator("#family .view img").count() == 0
     deadline = time.monotonic() + 60
     while not page.evaluate(ready):
         assert time.monotonic() < deadline

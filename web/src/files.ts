@@ -6,6 +6,8 @@ declare global {
 
 const within = (name: string): string | undefined => globalThis.hedonFiles?.[name];
 
+export const isSingleFile = (): boolean => globalThis.hedonFiles !== undefined;
+
 export const fileAddress = (name: string): string => within(name) ?? new URL(name, document.baseURI).href;
 
 /** A worker that runs a world. */

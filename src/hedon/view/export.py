@@ -24,8 +24,8 @@ def export(folder: Path, data: Mapping[str, Any], records: Mapping[str, Path]) -
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ViewError(f"{folder} is not empty: choose a new folder, or remove what is in it first")
-    needless = ("single.js",) if "story" in data else ("single.js", "hero.gz", "hero.jpg")
-    pages = {name: path for name, path in page_files().items() if name not in needless}
+    needless = ("single.js",) if "story" in data else ("single.js", "hero.", "still/")
+    pages = {name: path for name, path in page_files().items() if not name.startswith(needless)}
     pairs = [*pages.items(), *((f"data/run/{name}", path) for name, path in records.items())]
     for name, path in pairs:
         target = folder / name

@@ -13,6 +13,7 @@ import { learning } from "./learning";
 import { type Place, placeOf } from "./link";
 import { sandbox } from "./sandbox";
 import type { Scene, Worlds } from "./scene";
+import { showStill } from "./still";
 import type { Stage } from "./stage";
 
 const MAKERS: Record<string, (section: HTMLElement, worlds: Worlds) => Scene> = { creature, learning, family, evolve, contest, sandbox };
@@ -30,8 +31,9 @@ async function begin(): Promise<void> {
     try {
       const scene = (scenes[name] = make(by(name), worlds));
       seen.observe(scene.stage?.host.querySelector(".view") ?? scene.section);
-    } catch (error) { // as where the browser has no graphics: the text and the other scenes stay
+    } catch (error) { // for example without graphics: a picture takes its place, and the other scenes still work
       by(name).append(element("p", { class: "fault", text: `This scene cannot be shown: ${told(error)}.` }));
+      showStill(by(name).querySelector(".view")!, name);
     }
   }
   requestAnimationFrame(picture);

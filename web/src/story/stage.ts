@@ -8,6 +8,7 @@ import { save } from "../csv";
 import { command, refusal } from "../settings";
 import type { Frame, Life, LiveWorld } from "../types";
 import { addressOf, copyAddress, type Place, SHORT } from "./link";
+import { hideStill, showStill } from "./still";
 
 const PICTURE_MS = 12; // of work for a world that plays, between two pictures
 const RUN_MS = 100; // of work for a world that runs to a step, between two looks at it
@@ -278,6 +279,8 @@ export class Stage {
     const digest = live.digest();
     if (live.over && this.playing) this.setPlaying(false);
     this.fault.hidden = live.error === "";
+    if (live.error && live.last === 0) showStill(this.fault.parentElement!, this.camera.scene);
+    else hideStill(this.fault.parentElement!);
     if (live.error && !this.fault.firstElementChild!.textContent!.includes(live.error)) this.fault.firstElementChild!.textContent = `This world stopped: ${live.error}.`;
     this.clock.textContent = `step ${show(live.last)}${live.over ? ", all dead" : ""}`;
     this.same.href = addressOf(this.place());
