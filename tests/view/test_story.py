@@ -15,7 +15,7 @@ pytest_plugins = ("view_fixture", "story_fixture")
 def test_a_reader_steers_to_five_meals_and_the_link_has_the_same_bits(article):
     watched = article("creature")
     creature = stage("creature")
-    watched.until(f"{creature}.playing && {creature}.live.last > 3 && {creature}.frame")  # it strolls by itself
+    watched.until(f"{creature}.playing && {creature}.live.last > 3 && {creature}.frame")  # it drives itself
     box = watched.page.locator("#creature canvas.world")
     box.focus()
     watched.page.keyboard.down("ArrowUp")

@@ -13,7 +13,7 @@ pytest_plugins = ("view_fixture", "story_fixture")
 
 SCORE = "document.querySelector('#contest-score').textContent"
 KNOBS = "[...document.querySelectorAll('#contest input[data-path]')].map((knob) => knob.value)"
-BAD = {"species.blue.reward.meal_coef": "-8", "species.blue.genome.action.initial_mean": "0"}
+BAD = {"species.you.reward.meal_coef": "-8", "species.you.genome.action.initial_mean": "0"}
 
 
 def test_a_contest_is_counted_and_its_link_carries_choice_and_seed(article):
@@ -33,8 +33,8 @@ def test_a_contest_is_counted_and_its_link_carries_choice_and_seed(article):
 def test_the_worlds_of_a_contest_stand_in_a_table_and_are_compared_with_a_coin(article):
     watched = article("contest")
     ends = [(1, 3, 5), (2, 9, 1), (3, 4, 4), (4, 7, 2)]
-    for seed, blue, orange in ends:
-        watched.get(f"{stage('contest')}.results().push({{ seed: {seed}, blue: {blue}, orange: {orange} }})")
+    for seed, yours, its in ends:
+        watched.get(f"{stage('contest')}.results().push({{ seed: {seed}, you: {yours}, evolution: {its} }})")
     watched.until(f"{SCORE}.endsWith('2 won, 1 lost, 1 drawn. A coin does that or better in 50 of 100 tries.')")
     with watched.page.expect_download() as waiting:
         watched.page.locator("#contest-picture").click()
@@ -72,9 +72,9 @@ def test_reset_and_sliders_end_a_contest_that_runs_and_another_may_begin(article
     reset = watched.page.locator("#contest").get_by_role("button", name="Reset")
     begin.click()
     watched.until(f"{stage('contest')}.live.last > 100 && {SCORE}.startsWith('World of seed 1: step ')")
-    set_knob(watched, "contest", "species.blue.reward.meal_coef", "-8")
+    set_knob(watched, "contest", "species.you.reward.meal_coef", "-8")
     assert rests(watched, "contest")
-    watched.get(f"{stage('contest')}.results().push({{ seed: 1, blue: 3, orange: 5 }})")
+    watched.get(f"{stage('contest')}.results().push({{ seed: 1, you: 3, evolution: 5 }})")
     watched.page.locator("#contest-more").click()
     watched.until(f"{stage('contest')}.live.last > 100")
     reset.click()
@@ -122,7 +122,7 @@ def test_the_lines_of_a_contest_stay_on_their_plot(article):
 
 @pytest.mark.long
 def test_a_link_of_a_contest_shows_its_feelings_while_its_world_runs(article):
-    watched = article("contest", "#scene=contest&seed=3&step=9000&species.blue.reward.meal_coef=-8")
+    watched = article("contest", "#scene=contest&seed=3&step=9000&species.you.reward.meal_coef=-8")
     watched.until(f"{SCORE}.startsWith('World of seed 3: step') && {SCORE}.endsWith('of 9,000. ')")
     assert watched.get(KNOBS) == ["-8", "0"]
     assert watched.get(f"{stage('contest')}.live.last") < 9000
@@ -132,8 +132,8 @@ def test_a_link_of_a_contest_shows_its_feelings_while_its_world_runs(article):
 
 TEXTS = """((meal, moving) => {
   const { stage } = hedon.scenes.contest;
-  stage.set(["species.blue.reward.meal_coef"], String(meal));
-  stage.set(["species.blue.genome.action.initial_mean"], String(moving));
+  stage.set(["species.you.reward.meal_coef"], String(meal));
+  stage.set(["species.you.genome.action.initial_mean"], String(moving));
   const { prototype } = CanvasRenderingContext2D;
   const { fillText } = prototype;
   const found = {};
@@ -171,7 +171,7 @@ def test_bad_feelings_lose_to_evolution(article):
     watched.page.locator("#contest-one").click()
     watched.until(f"{stage('contest')}.results().length === 1", 900)
     [end] = watched.get(f"{stage('contest')}.results()")
-    assert end["blue"] < end["orange"]
+    assert end["you"] < end["evolution"]
     watched.until("document.querySelector('#contest-score').textContent.includes('evolution wins')")
     same = native(watched, "contest", "contest", 20480, *(f"{path}={value}" for path, value in BAD.items()))
     assert watched.get(f"{stage('contest')}.live.digest()") == same.digest()
@@ -185,7 +185,7 @@ def test_the_score_counts_descendants_and_a_press_on_the_map_chooses(article):
     meal, moving = map(float, watched.get(KNOBS))
     assert meal > 5
     assert moving < -5
-    changes = [f"species.blue.reward.meal_coef={meal}", f"species.blue.genome.action.initial_mean={moving}"]
+    changes = [f"species.you.reward.meal_coef={meal}", f"species.you.genome.action.initial_mean={moving}"]
     watched.until(f"{stage('contest')}.live.ready && {stage('contest')}.live.last === 0")
     run_to(watched, "contest", 3000)
     agents = native(watched, "contest", "contest", 3000, *changes).agents()

@@ -63,7 +63,7 @@ def test_a_guess_is_answered_and_a_chart_is_drawn_beside_an_arena_out_of_sight(a
     watched.until(f"{stage('contest')}.live?.ready && {chart}.width === {chart}.clientWidth && {drawn}.match(/[1-9]/)")
     assert not watched.get(f"{stage('contest')}.seen")
     before = watched.get(drawn)
-    set_knob(watched, "contest", "species.blue.reward.meal_coef", "7")
+    set_knob(watched, "contest", "species.you.reward.meal_coef", "7")
     watched.until(f"{drawn} !== {before!r}")
     assert not watched.get(f"{stage('contest')}.pictures")
 
@@ -109,7 +109,7 @@ def test_what_begins_another_world_ends_the_learning_of_the_one_before(article):
 
 def test_a_link_that_is_refused_changes_nothing(article):
     watched = article("contest")
-    [meal, moving] = (f"species.blue.{name}" for name in ("reward.meal_coef", "genome.action.initial_mean"))
+    [meal, moving] = (f"species.you.{name}" for name in ("reward.meal_coef", "genome.action.initial_mean"))
     set_knob(watched, "contest", meal, "7")
     live = f"{stage('contest')}.live"
     watched.get(f"void (window.before = {live})")
@@ -216,7 +216,7 @@ def test_only_the_main_button_of_a_mouse_steers(article):
     watched.page.locator("#creature canvas.world").click(button="right")
     watched.until(f"{stage('creature')}.live.last > 8")
     assert watched.get(f"before === {stage('creature')}.live")
-    assert watched.get(f"{HINT}.innerText.startsWith('It strolls by itself')")
+    assert watched.get(f"{HINT}.innerText.startsWith('It drives itself')")
 
 
 @pytest.mark.parametrize("how", ["click", pytest.param("key", marks=pytest.mark.long)])

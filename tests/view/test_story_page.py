@@ -94,9 +94,9 @@ def test_the_numbers_of_the_contest_are_those_of_the_committed_results():
     made = runpy.run_path(str(ROOT / "web" / "evidence.py"))["text"]()
     assert (STORY / "evidence.json").read_text() == made, "call: python web/evidence.py"
     means = {row["weight"]: row["mean"] for row in json.loads(made)["ends"]["mean"] if row["seed"] == 1}
-    orange = load_config(SCENES / "contest.toml").species["orange"]
-    assert orange.reward.meal_coef == means["w_normal"]
-    assert orange.genome.action.initial_mean == means["w_action"]
+    evolved = load_config(SCENES / "contest.toml").species["evolution"]
+    assert evolved.reward.meal_coef == means["w_normal"]
+    assert evolved.genome.action.initial_mean == means["w_action"]
 
 
 @pytest.fixture(scope="module")

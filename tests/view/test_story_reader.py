@@ -68,8 +68,8 @@ def test_it_strolls_by_itself_and_says_how_to_take_over(article):
     creature = stage("creature")
     hint = watched.page.locator("#creature .hint")
     watched.until(f"{creature}.live.last > 3 && {creature}.frame && !document.querySelector('#creature .hint').hidden")
-    assert "strolls by itself" in hint.inner_text()
-    assert "begin anew" in hint.inner_text()
+    assert "drives itself" in hint.inner_text()
+    assert "to take over" in hint.inner_text()
     watched.page.keyboard.press("ArrowUp")
     watched.until("document.querySelector('#creature .hint').hidden")
 

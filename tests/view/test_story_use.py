@@ -59,7 +59,7 @@ def test_a_world_that_cannot_run_says_so_in_its_arena_and_can_be_tried_again(sto
 def test_no_scene_that_runs_shows_a_fault(article):
     watched = article("creature")
     watched.until("hedon.scenes.creature.stage.live.last > 30")
-    watched.page.locator("#creature .hint").get_by_text("It strolls by itself").wait_for()
+    watched.page.locator("#creature .hint").get_by_text("It drives itself").wait_for()
     assert watched.get("[...document.querySelectorAll('.fault')].filter((each) => !each.hidden).length") == 0
 
 

@@ -8,6 +8,7 @@ export interface Axis {
 }
 
 const [LEFT, BOTTOM, TOP, RIGHT] = [46, 34, 10, 10]; // pixels around the plot
+const NAME = 12; // pixels between the middle of a dot and its name
 const SPOT = 8; // radius of a dot with a name [pixel]
 
 export class Chart {
@@ -77,8 +78,8 @@ export class Chart {
     this.ink.fillText(words, this.px(x), this.py(y));
   }
 
-  /** A dot with its name, both kept within the axes: beside it, or some lines higher, where another name is beside it. */
-  named(words: string, x: number, y: number, color: string, lines = 0): void {
+  /** A dot with its name on one side of it, or on the other where there is no room; both are kept within the axes. */
+  named(words: string, x: number, y: number, color: string, side: "left" | "right"): void {
     const { ink } = this;
     const { clientWidth: width, clientHeight: height } = this.canvas;
     const px = Math.min(Math.max(this.px(x), LEFT + SPOT), width - RIGHT - SPOT);
@@ -89,9 +90,10 @@ export class Chart {
       ink.fillStyle = fill;
       ink.fill();
     }
-    const left = px > (LEFT + width - RIGHT) / 2;
+    const room = ink.measureText(words).width + NAME;
+    const left = side === "left" ? px - room > LEFT : px + room > width - RIGHT;
     ink.textAlign = left ? "right" : "left";
-    const at = [px + (left ? -12 : 12), py + 4 - 20 * lines] as const;
+    const at = [px + (left ? -NAME : NAME), py + 4] as const;
     [ink.strokeStyle, ink.lineWidth, ink.lineJoin] = ["#14171c", 3, "round"]; // so that it can be read on any color
     ink.strokeText(words, ...at);
     ink.fillStyle = "#ffffff";

@@ -11,16 +11,16 @@ import { Stage } from "./stage";
 const STEPS = 20_480;
 const MORE = 4; // worlds besides the first
 const FITTEST = Math.max(...evidence.surface.value.flat());
-const [BLUE, ORANGE] = [0, 3]; // their places among the distinct colors
+const [TEAL, PURPLE] = [7, 8]; // their places among the distinct colors: no color of a feeling
 const LEAST = 40; // descendants that the plot has room for
 const SPAN = 8; // of a feeling, on the sliders and on the map
-const FEELINGS = ["species.blue.reward.meal_coef", "species.blue.genome.action.initial_mean"];
+const FEELINGS = ["species.you.reward.meal_coef", "species.you.genome.action.initial_mean"];
 
 /** How many descendants each side has had at the end of a world. */
 interface End {
   seed: number;
-  blue: number;
-  orange: number;
+  you: number;
+  evolution: number;
 }
 
 /** The chance that a fair coin falls heads at least `wins` times of `worlds`. */
@@ -34,7 +34,7 @@ export function luck(wins: number, worlds: number): number {
 }
 
 export function contest(section: HTMLElement, worlds: Worlds): Scene {
-  const coloring: Coloring = { name: "side", label: "side", scale: "distinct", value: (_, frame, i) => (frame.species[i] === 0 ? BLUE : ORANGE) };
+  const coloring: Coloring = { name: "side", label: "side", scale: "distinct", value: (_, frame, i) => (frame.species[i] === 0 ? TEAL : PURPLE) };
   const stage = new Stage(section, worlds.contest!, { scene: "contest", speed: 4, coloring });
   const lines = new Chart(section.querySelector("#contest-lines")!, { low: 0, high: STEPS, label: "steps" }, { low: 0, high: LEAST, label: "descendants" });
   stage.arena.rings = false; // the sides differ by color alone
@@ -45,7 +45,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   const table = section.querySelector("table")!;
   const share = section.querySelector<HTMLButtonElement>("#contest-picture")!;
   const buttons = ["one", "more"].map((name) => section.querySelector<HTMLButtonElement>(`#contest-${name}`)!);
-  let course: [number, number, number][] = []; // step, blue, orange
+  let course: [number, number, number][] = []; // step, your descendants, those of evolution
   let results: End[] = [];
   let busy = false;
   let turn = 0; // how often worlds were begun or forgotten: what waited for a world of an earlier turn stops
@@ -62,34 +62,33 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     buttons[1]!.setAttribute("aria-disabled", String(busy || results.length === 0));
   };
   stage.onWords = () => {
-    const [blue, orange] = [styleColor("--blue"), styleColor("--orange")];
+    const [yours, its] = [styleColor("--you"), styleColor("--evolution")];
     lines.x.high = Math.max(STEPS, stage.live.last); // a link may have gone further
     lines.y.high = Math.max(LEAST, ...course.map(([, ...born]) => Math.max(...born)));
     lines.begin();
-    lines.line(course.map(([step, count]) => [step, count]), blue);
-    lines.line(course.map(([step, , count]) => [step, count]), orange);
+    lines.line(course.map(([step, count]) => [step, count]), yours);
+    lines.line(course.map(([step, , count]) => [step, count]), its);
     able();
     drawMap();
     const running = stage.running ? `World of seed ${stage.seed}: step ${show(stage.live.last)} of ${show(stage.aim)}. ` : "";
     score.textContent = running + verdict(results) || "No world yet.";
     table.hidden = share.hidden = results.length === 0;
-    const cells = ({ seed, blue, orange }: End) => [seed, blue, orange].map((value) => element("td", { text: String(value) }));
+    const cells = ({ seed, you, evolution }: End) => [seed, you, evolution].map((value) => element("td", { text: String(value) }));
     table.tBodies[0]!.replaceChildren(...results.map((end) => element("tr", {}, ...cells(end))));
   };
   const drawMap = () => {
     map.begin();
     const { value, low, high } = evidence.surface;
-    const step = (high - low) / (value.length - 1); // between two points that were measured
+    const step = (high - low) / (value.length - 1); // between two points of the fitted surface
     const edge = (i: number) => Math.min(Math.max(low + (i - 0.5) * step, -SPAN), SPAN);
     value.forEach((row, a) =>
       row.forEach((fit, f) => map.box(edge(f), edge(a), edge(f + 1), edge(a + 1), `hsl(260 45% ${Math.round(12 + (76 * Math.max(fit, 0)) / FITTEST)}%)`)),
     );
-    const evolution = [stage.value("species.orange.reward.meal_coef"), stage.value("species.orange.genome.action.initial_mean")] as const;
+    const evolution = [stage.value("species.evolution.reward.meal_coef"), stage.value("species.evolution.genome.action.initial_mean")] as const;
     const you = [stage.value(FEELINGS[0]!), stage.value(FEELINGS[1]!)] as const;
-    const near = Math.abs(you[0] - evolution[0]) < 5 && Math.abs(you[1] - evolution[1]) < 1.2; // so that their names would meet
-    const apart = !near ? 0 : you[1] > evolution[1] ? 1 : -1; // lines
-    map.named("evolution", ...evolution, styleColor("--orange"), -apart);
-    map.named("you", ...you, styleColor("--blue"), apart);
+    const left = you[0] < evolution[0]; // so that their names point away from each other
+    map.named("evolution", ...evolution, styleColor("--evolution"), left ? "right" : "left");
+    map.named("you", ...you, styleColor("--you"), left ? "left" : "right");
   };
   const some = async (count: number) => {
     const own = ++turn;
@@ -106,7 +105,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   /** Keeps how the world ended, if it did. */
   const note = () => {
     const end = course[course.length - 1];
-    if (end && !stage.live.error && (stage.live.last >= STEPS || stage.live.over)) results.push({ seed: stage.seed, blue: end[1], orange: end[2] });
+    if (end && !stage.live.error && (stage.live.last >= STEPS || stage.live.over)) results.push({ seed: stage.seed, you: end[1], evolution: end[2] });
   };
   const clear = () => {
     turn++;
@@ -135,7 +134,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   });
   share.addEventListener("click", () => {
     const [won, lost] = tally(results);
-    const headline = won > lost ? `I beat evolution ${won} : ${lost}` : `Evolution beat me ${lost} : ${won}`;
+    const headline = won > lost ? `I beat evolution ${won} : ${lost}` : won < lost ? `Evolution beat me ${lost} : ${won}` : `I drew with evolution, ${won} : ${lost}`;
     saveResult(headline, [stage.arena.scene.canvas, map.canvas]);
   });
   section.addEventListener("reset", clear);
@@ -156,8 +155,8 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
 /** How the last world ended, and how often a fair coin would win as many of those that had a winner. */
 function verdict(results: End[]): string {
   if (results.length === 0) return "";
-  const { blue, orange } = results[results.length - 1]!;
-  const last = `Blue has ${blue} descendants, orange ${orange}: ${blue > orange ? "you win" : blue < orange ? "evolution wins" : "a draw"}.`;
+  const { you, evolution } = results[results.length - 1]!;
+  const last = `You have ${you} descendants, evolution ${evolution}: ${you > evolution ? "you win" : you < evolution ? "evolution wins" : "a draw"}.`;
   if (results.length === 1) return last;
   const [won, lost] = tally(results);
   const counts = `${last} ${won} won, ${lost} lost, ${results.length - won - lost} drawn.`;
@@ -167,4 +166,4 @@ function verdict(results: End[]): string {
 }
 
 /** How many worlds the reader won, and how many evolution did. */
-const tally = (results: End[]): [number, number] => [results.filter((end) => end.blue > end.orange).length, results.filter((end) => end.blue < end.orange).length];
+const tally = (results: End[]): [number, number] => [results.filter((end) => end.you > end.evolution).length, results.filter((end) => end.you < end.evolution).length];

@@ -93,12 +93,13 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
     drawGlow(stage, felt);
   };
   stage.onWords = () => {
-    const said = strolling ? "strolls" : stage.aim > stage.live.last ? "replays" : steered ? "" : "waits";
+    const meals = stage.life()?.eaten[0] ?? 0;
+    const done = meals >= ENOUGH && !guess.value() && stage.changes.size === 0;
+    const said = strolling ? "strolls" : stage.aim > stage.live.last ? "replays" : !steered ? "waits" : done ? "done" : "";
     hint.hidden = said === "";
     for (const each of hint.querySelectorAll<HTMLElement>("[data-when]")) each.hidden = each.dataset.when !== said;
     const life = stage.life();
     if (!life) return;
-    const meals = life.eaten[0]!;
     told("energy").textContent = show(life.energy, 1);
     told("meals").textContent = show(meals);
     told("reward").textContent = show(life.reward, 2);

@@ -33,6 +33,7 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
   const stage = new Stage(section, worlds.evolve!, { scene: "evolve", speed: 8, coloring });
   const chart = new Chart(section.querySelector("#evolve-plot")!, { low: 0, high: STEPS, label: "steps" }, { low: -1, high: 1, label: "mean feeling" });
   const answer = section.querySelector<HTMLElement>("#evolve-answer")!;
+  const then = section.querySelector<HTMLElement>("#evolve-then")!; // what it means, after a reader has seen it
   const [run, again, unable] = ["run", "seed", "learner"].map((name) => section.querySelector<HTMLButtonElement>(`#evolve-${name}`)!) as [HTMLButtonElement, HTMLButtonElement, HTMLButtonElement];
   stage.play.hidden = true; // its buttons run it to the end of the plot, or Reset stops it
   let done: Course[] = [];
@@ -65,7 +66,10 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
       chart.line(points(now, now.feeling), mark, 3, now.learns ? [] : [8, 5]);
     }
     if (pad.guess.length > 0) chart.line(pad.line(), styleColor("--ink"), 2, [2, 4]);
-    else if (!now?.step.length) chart.dot(0, pad.begin(), mark, 6);
+    else if (!busy && done.length === 0) {
+      chart.dot(0, pad.begin(), mark, 6);
+      chart.text("Draw your line from here →", STEPS / 30, pad.begin() + 0.12, styleColor("--ink"));
+    }
     if (pad.whole) stage.notes.set("guess", kept(pad.guess));
     else stage.notes.delete("guess");
     pad.shut = busy || done.length > 0;
@@ -73,6 +77,7 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     run.setAttribute("aria-disabled", String(busy || !pad.whole)); // so that it keeps the focus
     for (const button of [again, unable]) button.setAttribute("aria-disabled", String(busy || done.length === 0));
     answer.textContent = words();
+    then.hidden = done.length === 0;
   };
   stage.onWords = () => {
     draw();

@@ -87,17 +87,14 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     const lines = [`Creature ${own.id}${dead(own)}: ${feels(own)}; ${ate(own)}, ${own.children} ${own.children === 1 ? "child" : "children"}.`];
     lines.push(parent ? `Its parent, ${parent.id}${dead(parent)}: ${feels(parent)}; ${ate(parent)}.` : "It is a founder.");
     if (parent) lines.push("Its network began at random, with nothing that the parent had learned.");
-    lines.push(kin === 1 ? "One of its family lives." : `${kin} of its family live.`);
+    lines.push(kin === 1 ? "Nobody else of its family lives." : `${kin} of its family live.`);
     return lines.map((text) => element("p", { text }));
   };
   const verdict = (known: [Life, Life][]): string => {
-    const apart = (a: number[], b: number[]) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]!), 0) / a.length;
-    const [children, parents] = [known.map(([child]) => child.genome[meal]!), known.map(([, parent]) => parent.genome[meal]!)];
-    const strangers = apart(children, [...parents.slice(1), parents[0]!]);
-    return (
-      `Only what feels good. In this world ${known.length} children differ from their parents by ${apart(children, parents).toFixed(2)} in how a meal feels, ` +
-      `from other parents by ${strangers.toFixed(2)}. How to find food each has to learn anew.`
-    );
+    const apart = (pairs: [Life, Life][]) => pairs.reduce((sum, [child, parent]) => sum + Math.abs(child.genome[meal]! - parent.genome[meal]!), 0) / pairs.length;
+    const others = known.flatMap(([child]) => known.filter(([, parent]) => parent.id !== child.parent).map(([, parent]): [Life, Life] => [child, parent]));
+    const strangers = others.length > 0 ? `, but ${apart(others).toFixed(2)} from another parent's` : "";
+    return `Only what feels good. A child's feeling about meals is on average ${apart(known).toFixed(2)} from its parent's${strangers}. Its network starts from scratch.`;
   };
   const { canvas } = stage.arena.scene;
   canvas.addEventListener("click", (event) => {

@@ -8,6 +8,7 @@ import { openStage, type Scene, type Worlds } from "./scene";
 import { Stage } from "./stage";
 
 const ROUNDS = 80; // windows with learning
+const MOVING = "genome.action.initial_mean";
 const PATH = 500; // steps of a path
 const FEW = 5; // rounds at the start and at the end that the answer compares
 
@@ -44,9 +45,11 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     const ate = (count: number) => (count === 0 ? "nothing" : counted(count, "meal"));
     const times = after / before;
     const more = before > 0 && times > 1 ? `: ${show(times, times < 10 ? 1 : 0)} times as many` : "";
-    const guessed = guess.value() ? ` You guessed ${guess.value()} times.` : "";
+    const hurts = stage.value(MOVING) < 0;
+    const guessed = guess.value() && !hurts ? ` You guessed ${guess.value()} times.` : "";
     const moves = `It moves ${lastPace.toFixed(2)} units per step, at first ${pace(0, 2 * PATH).toFixed(2)}.`;
-    guess.answer(`It ate ${ate(before)} in its first ${FEW} rounds and ${ate(after)} in its last ${FEW}${more}.${guessed} ${moves}`);
+    const moral = hurts ? " It learned what felt good to it. That need not be good for it." : "";
+    guess.answer(`It ate ${ate(before)} in its first ${FEW} rounds and ${ate(after)} in its last ${FEW}${more}.${guessed} ${moves}${moral}`);
   };
 
   stage.onBegin = () => {
@@ -90,9 +93,11 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
   run.addEventListener("click", () => void learn());
   const read = bindKnobs(section, stage, () => stage.begin());
   section.querySelector("#learning-sit")!.addEventListener("click", () => {
-    stage.set(["genome.action.initial_mean"], "-10");
+    stage.stop();
+    stage.set([MOVING], "-10");
     read();
-    stage.begin();
+    stage.begin(1);
+    void learn();
   });
   Object.assign(stage, { rate, pace: () => pace(2 * PATH, path.length) }); // for tests and curious persons
   return {

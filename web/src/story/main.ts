@@ -17,7 +17,7 @@ import { showStill } from "./still";
 import type { Stage } from "./stage";
 
 const MAKERS: Record<string, (section: HTMLElement, worlds: Worlds) => Scene> = { creature, learning, family, evolve, contest, sandbox };
-const PRINTED = 100; // steps of a world before it is printed
+const PRINTED = 600; // steps of a world before it is printed
 const scenes: Record<string, Scene> = {};
 const story = { scenes, pictures: 0, opened: "" };
 Object.assign(window, { hedon: story }); // for a curious person's console, and for tests
