@@ -1,9 +1,16 @@
 """The local server gives the page and the run's tables to who has the link, and nothing else to anyone."""
 
+import gzip
 import http.client
+import os
+import re
+import signal
 import socket
 import struct
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import pytest
 from command import hedon
@@ -13,10 +20,13 @@ from view_page import record, run_server, serving
 from hedon.cli.main import app
 from hedon.config.load import load_config
 from hedon.record.error import RecordError
+from hedon.view import compressed
 from hedon.view.export import export
 from hedon.view.index import RunIndex
 from hedon.view.live import live_world
-from hedon.view.page import ViewError
+from hedon.view.page import ViewError, page_files
+from hedon.view.server import Server
+from hedon.view.token import kept_token, token_path
 
 
 @pytest.fixture(scope="module")
@@ -30,9 +40,10 @@ def server(folder):
         yield running
 
 
-def ask(server, path, method="GET", host=None):
+def ask(server, path, method="GET", host=None, encoding="identity"):
     connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=10)
-    connection.request(method, path, headers={"Host": host or f"127.0.0.1:{server.server_port}"})
+    headers = {"Host": host or f"127.0.0.1:{server.server_port}", "Accept-Encoding": encoding}
+    connection.request(method, path, headers=headers)
     answer = connection.getresponse()
     body = answer.read()
     connection.close()
@@ -161,3 +172,157 @@ def test_an_address_that_is_none_is_answered(server):
     with socket.create_connection(("127.0.0.1", server.server_port)) as connection:
         connection.sendall(f"GET http://[bad/ HTTP/1.0\r\nHost: 127.0.0.1:{server.server_port}\r\n\r\n".encode())
         assert b" 400 " in connection.recv(100)
+
+
+START = (sys.executable, "-c", "from hedon.cli.start import main; main()")
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def test_a_chosen_port_has_the_same_address_after_a_restart(cache):
+    """By the command itself, in processes of their own."""
+    port, links = free_port(), []
+    for _ in range(2):
+        command = [*START, "view", "--live", "small", "--port", str(port), "--no-open"]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as running:
+            links.append(running.stdout.readline().split()[-1])
+            connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+            connection.request("GET", links[0].split(str(port))[1])
+            assert connection.getresponse().status == 200
+            connection.close()
+            running.send_signal(signal.SIGINT)
+    assert links[0] == links[1]
+    assert links[0].startswith(f"http://127.0.0.1:{port}/")
+
+
+def test_any_free_port_has_a_new_token_and_keeps_none(cache):
+    tokens = set()
+    for _ in range(2):
+        server = Server({}, dict)
+        server.server_close()
+        tokens.add(server.token)
+    assert len(tokens) == 2
+    assert not cache.exists()
+
+
+def test_without_the_kept_token_there_is_nothing_either(cache):
+    with serving(Server({}, dict, free_port())) as server:
+        assert server.token == kept_token()
+        assert ask(server, f"/{server.token}/")[0].status == 200
+        for path in ("/", "/index.html", f"/{server.token[:-1]}/", f"/{server.token.swapcase()}/"):
+            assert ask(server, path)[0].status == 404
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permissions of files are another matter there")
+def test_only_its_owner_can_read_the_token(cache):
+    before = os.umask(0)
+    try:
+        token = kept_token()
+    finally:
+        os.umask(before)
+    assert token_path() == cache / "hedon" / "view-token"
+    assert token_path().stat().st_mode & 0o777 == 0o600
+    assert token_path().parent.stat().st_mode & 0o777 == 0o700
+    assert re.fullmatch(r"[A-Za-z0-9_-]{32}", token)
+    assert [path.name for path in token_path().parent.iterdir()] == ["view-token"]
+    assert kept_token() == token
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permissions of files are another matter there")
+@pytest.mark.parametrize("spoil", ["readable", "written", "short", "link", "folder"])
+def test_a_token_that_others_may_know_is_replaced(spoil, cache):
+    token, path = kept_token(), token_path()
+    if spoil == "readable":
+        path.chmod(0o640)
+    elif spoil == "written":
+        path.chmod(0o602)
+    elif spoil == "short":
+        path.write_text("a")
+    else:
+        path.unlink()
+        if spoil == "link":
+            other = cache / "other"
+            other.write_text(token)
+            other.chmod(0o600)
+            path.symlink_to(other)
+        else:
+            path.mkdir()
+    fresh = kept_token()
+    assert fresh != token
+    assert len(fresh) == 32
+    if spoil != "folder":  # which is left as it is: then each start has a token of its own
+        assert kept_token() == fresh
+        assert not path.is_symlink()
+        assert path.stat().st_mode & 0o777 == 0o600
+
+
+def test_without_a_cache_folder_the_token_is_a_new_one(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    assert kept_token() != kept_token()
+
+
+def test_a_browser_that_takes_gzip_gets_each_file_compressed(server):
+    for name in ("", "assets/index.js", "assets/index.css", "hedon.wasm", "data/run.json", "story.html"):
+        plain, content = ask(server, f"/{server.token}/{name}")
+        packed, body = ask(server, f"/{server.token}/{name}", encoding="gzip, deflate, br, zstd")
+        assert (plain.getheader("Content-Encoding"), packed.getheader("Content-Encoding")) == (None, "gzip")
+        assert gzip.decompress(body) == content
+        assert len(body) < 0.7 * len(content)
+        assert packed.getheader("Content-Length") == str(len(body))
+        assert packed.getheader("Content-Type") == plain.getheader("Content-Type")
+        assert plain.getheader("Vary") == packed.getheader("Vary") == "Accept-Encoding"
+        head, nothing = ask(server, f"/{server.token}/{name}", method="HEAD", encoding="gzip")
+        assert (head.getheader("Content-Length"), nothing) == (str(len(body)), b"")
+
+
+@pytest.mark.parametrize("name", ["data/run/frames/part-000000.parquet", "hero.gz", "hero.jpg"])
+def test_files_that_are_dense_are_sent_as_they_are(server, name):
+    answer, body = ask(server, f"/{server.token}/{name}", encoding="gzip")
+    assert (answer.status, answer.getheader("Content-Encoding")) == (200, None)
+    assert body == ask(server, f"/{server.token}/{name}")[1]
+
+
+@pytest.mark.parametrize(
+    ("accepted", "takes"),
+    [
+        ("gzip", True),
+        ("br, GZIP;q=0.5", True),
+        ("*", True),
+        ("", False),
+        ("identity", False),
+        ("gzip;q=0", False),
+        ("gzip; q=0.0, *", False),
+        ("*;q=0, gzip", True),
+        ("xgzip", False),
+    ],
+)
+def test_a_browser_says_whether_it_takes_gzip(accepted, takes):
+    assert compressed.takes_gzip(accepted) is takes
+
+
+def test_each_file_is_compressed_once(server, monkeypatch):
+    calls = []
+    pack = gzip.compress
+    monkeypatch.setattr(compressed.gzip, "compress", lambda *given, **how: calls.append(1) or pack(*given, **how))
+    bodies = {ask(server, f"/{server.token}/assets/index.js", encoding="gzip")[1] for _ in range(3)}
+    assert (len(calls), len(bodies)) == (1, 1)
+    path = Path(page_files()["assets/index.js"])
+    assert gzip.decompress(bodies.pop()) == path.read_bytes()
+
+
+def test_data_that_changes_is_compressed_again():
+    numbers = iter(([1] * 500, [2] * 500, [2] * 500))
+    with serving(Server({"page": lambda: next(numbers)}, dict)) as server:
+        bodies = [ask(server, f"/{server.token}/data/page.json", encoding="gzip")[1] for _ in range(3)]
+    assert [gzip.decompress(body)[:3] for body in bodies] == [b"[1,", b"[2,", b"[2,"]

@@ -1,7 +1,8 @@
 """The local server of `hedon view`: read-only, for this machine, and limited to the files that the page needs.
 
-Every link starts with a random token, so that other programs and pages that know the port get nothing. The server has
-a list of names, and returns the file or data for a name; it never builds a path from a request.
+Every link begins with a random token, so that other users, programs and pages that know the port get nothing. For a
+port that the user chose, the token is kept in a file that only they can read, so that links survive a restart. The
+server knows a list of names, and gives the file or data behind a name; it never makes a path out of a request.
 """
 
 import secrets
@@ -10,11 +11,14 @@ from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path, PurePosixPath
+from types import MappingProxyType
 from typing import Any, cast
 from urllib.parse import urlsplit
 
 from hedon.error import HedonError
+from hedon.view.compressed import Compressed, takes_gzip
 from hedon.view.page import CONTENT_TYPES, page_files, to_json
+from hedon.view.token import fresh_token, kept_token
 
 LOOPBACK = "127.0.0.1"
 HEADERS = {
@@ -28,6 +32,7 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-store",
+    "Vary": "Accept-Encoding",
 }
 
 Data = Mapping[str, Callable[[], Any]]
@@ -37,12 +42,12 @@ Files = Callable[[], Mapping[str, Path]]
 
 
 class Server(ThreadingHTTPServer):
-    """Serves the page on a free port of this machine.
+    """Serves the page on a port of this machine.
 
     Args:
-        data: Data of the page, served as `data/<name>.json`.
-        records: Records that the page may read, served as `data/run/<name>`.
-        port: Port to use; 0 for any free one.
+        data: What the page is told, as `data/<name>.json`.
+        records: The records that it may read, as `data/run/<name>`.
+        port: 0 for any free one, with a new token. Another port always has the token of this user.
     """
 
     daemon_threads = True
@@ -51,7 +56,8 @@ class Server(ThreadingHTTPServer):
         self.data = data
         self.records = records
         self.page = page_files()
-        self.token = secrets.token_urlsafe(24)
+        self.compressed = Compressed()
+        self.token = kept_token() if port else fresh_token()
         super().__init__((LOOPBACK, port), _Handler)
         self.hosts = {f"{name}:{self.server_port}" for name in (LOOPBACK, "localhost")}
 
@@ -102,7 +108,11 @@ class _Handler(BaseHTTPRequestHandler):
             return self._answer(HTTPStatus.CONFLICT, "text/plain; charset=utf-8", f"{error}\n".encode())
         if found is None:
             return self._answer(HTTPStatus.NOT_FOUND, "text/plain", b"not found\n")
-        return self._answer(HTTPStatus.OK, *found)
+        content_type, content = found
+        packed = server.compressed.pack(path, content) if takes_gzip(self.headers.get("Accept-Encoding", "")) else None
+        if packed is None:
+            return self._answer(HTTPStatus.OK, content_type, content)
+        return self._answer(HTTPStatus.OK, content_type, packed, {"Content-Encoding": "gzip"})
 
     def handle(self) -> None:
         """Answers until the page closes the connection, which it may do in the middle of an answer."""
@@ -113,9 +123,12 @@ class _Handler(BaseHTTPRequestHandler):
         with suppress(ConnectionError, ValueError):  # unsent data are dropped
             super().finish()
 
-    def _answer(self, status: HTTPStatus, content_type: str, content: bytes) -> None:
+    def _answer(
+        self, status: HTTPStatus, content_type: str, content: bytes, more: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
         self.send_response(status)
-        for name, value in {**HEADERS, "Content-Type": content_type, "Content-Length": str(len(content))}.items():
+        length = {"Content-Type": content_type, "Content-Length": str(len(content))}
+        for name, value in {**HEADERS, **length, **more}.items():
             self.send_header(name, value)
         self.end_headers()
         if self.command != "HEAD":

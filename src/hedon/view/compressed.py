@@ -1,0 +1,44 @@
+"""What the local server sends compressed, by gzip: each content once, however often it is asked for."""
+
+import gzip
+import threading
+from hashlib import sha256
+from pathlib import PurePosixPath
+
+LEVEL = 6
+DENSE = frozenset((".parquet", ".gz", ".jpg"))
+"""Kinds of files that are compressed already."""
+
+
+def takes_gzip(accepted: str) -> bool:
+    """Whether a browser takes gzip, from what it sent as `Accept-Encoding`."""
+    weights = {}
+    for each in accepted.lower().replace(" ", "").split(","):
+        name, _, weight = each.partition(";q=")
+        weights[name] = weight.strip("0.") != "" or weight == ""
+    return weights.get("gzip", weights.get("*", False))
+
+
+class Compressed:
+    """The compressed content of each name that was asked for; data that has changed since is compressed again."""
+
+    def __init__(self) -> None:
+        self._packed: dict[str, tuple[bytes, bytes]] = {}
+        self._lock = threading.Lock()
+
+    def pack(self, name: str, content: bytes) -> bytes | None:
+        """The content in gzip's format; None if that would not be smaller.
+
+        Args:
+            name: Path of the link, whose suffix tells how dense the content is.
+            content: What a browser that takes no gzip would get.
+        """
+        if PurePosixPath(name).suffix in DENSE:
+            return None
+        digest = sha256(content).digest()
+        with self._lock:  # two browsers that begin at once compress a file once
+            known = self._packed.get(name)
+            if known is None or known[0] != digest:
+                known = (digest, gzip.compress(content, LEVEL, mtime=0))
+                self._packed[name] = known
+        return known[1] if len(known[1]) < len(content) else None
