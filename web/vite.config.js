@@ -4,7 +4,7 @@ import { defineConfig } from "vite";
 
 const output = {
   entryFileNames: "assets/[name].js",
-  chunkFileNames: "assets/[name].js",
+  chunkFileNames: "assets/shared.js",
   assetFileNames: "assets/[name][extname]",
 };
 

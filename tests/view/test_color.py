@@ -82,8 +82,8 @@ def test_agents_stand_out_whatever_they_are_colored_by(ground, run_folder, watch
         watched.until("hedon.source.lives.size > 0")
         watched.rest_at(1984)
         names = watched.get("[...document.querySelector('#color').options].map((each) => each.value)")
-        assert len(names) > 20
-        for name in [*names[:9], "neutral_1"]:
+        assert len(names) > 10
+        for name in [*names[:9], "neutral"]:
             watched.page.locator("#color").select_option(name)
             image, places = pixels(watched)
             middle = image[places[:, 1], places[:, 0]]

@@ -45,7 +45,7 @@ def test_the_space_bar_opens_a_group_of_settings_and_the_world_stays(watched):
 
 def test_arrows_go_from_tab_to_tab_and_not_through_time(watched):
     watched.page.locator("#tab-agent").focus()
-    for name in ("plots", "tree", "settings", "world-panel", "agent"):
+    for name in ("agents", "plots", "tree", "settings", "world-panel", "agent"):
         watched.page.keyboard.press("ArrowRight")
         assert watched.get("document.activeElement.id") == f"tab-{name}"
         panels = (

@@ -20,7 +20,7 @@ CHANGES = {
     "a closer view": "hedon.arena.drag([100, 100], [100, 100], 2)",
     "an agent": "hedon.choose(hedon.frame.id[0])",
     "its rays": "hedon.arena.showRays = false",
-    "colors": "hedon.paint(hedon.colors[1].name)",
+    "colors": "hedon.colors.choose('age')",
     "the ground": "document.querySelector('#theme').click()",
     "a branch": "hedon.arena.marked = new Set(hedon.frame.id)",
 }

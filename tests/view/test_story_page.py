@@ -78,7 +78,7 @@ def test_numbers_in_the_text_are_those_of_the_config(name):
 def test_the_article_is_small():
     """Compressed: what a reader loads, of the two modules the one that the browser takes."""
     names = [PAGE, "hedon.wasm", "hedon-relaxed.wasm", "assets/story.js", "assets/story.css", "assets/live.worker.js"]
-    names += ["assets/csv.js", "assets/member.worker.js"]
+    names += ["assets/shared.js", "assets/member.worker.js"]
     told = len(gzip.compress(json.dumps(story()).encode()))
     sizes = {name: len(gzip.compress(page_files()[name].read_bytes())) for name in names}
     both = sum(size for name, size in sizes.items() if name.endswith(".wasm"))

@@ -1,9 +1,10 @@
 // The page: one source of moments, what is chosen, and what is drawn of it 60 times a second.
 import { AgentPanel } from "./agent";
+import { AgentTable } from "./agents";
 import { Arena } from "./arena";
 import { blend } from "./blend";
 import { Chapters } from "./chapters";
-import { type Coloring, colorings } from "./color";
+import { ColorList } from "./colorlist";
 import { by, counted, element, option, show } from "./element";
 import { showHelp } from "./help";
 import { Legend } from "./legend";
@@ -11,10 +12,11 @@ import { type Link, readLink, writeLink } from "./link";
 import { Live } from "./live";
 import { Notice } from "./notice";
 import { Plots } from "./plots";
-import { recall, remember, switchTheme } from "./preference";
+import { recall, remember } from "./preference";
 import { castRays, type Ray } from "./rays";
 import { recordedSettings } from "./recorded";
 import { Replay } from "./replay";
+import { Selection } from "./selection";
 import { Settings } from "./settings";
 import { Tabs } from "./tabs";
 import { events, Timeline } from "./timeline";
@@ -42,8 +44,6 @@ export class App {
   speed = 1;
   now = 0;
   pictures = 0;
-  private coloring!: Coloring;
-  private colors: Coloring[] = [];
   tree: Tree | undefined;
   private plots: Plots | undefined;
   private tools: Tools | undefined;
@@ -53,12 +53,15 @@ export class App {
   private panelsDue = 0;
   private threads = 0; // of a live world, as the link asks for; 0 for as many as help
   private owed = 0; // part of a step at speeds below 1
+  private readonly colors = new ColorList(() => this.changed());
   private readonly legend = new Legend();
   private readonly notice = new Notice();
   private readonly panel = new AgentPanel((id) => this.choose(id));
+  private readonly selection = new Selection(() => this.changed());
+  private readonly table = new AgentTable(this.selection, () => this.changed(), (id) => this.choose(id));
   private readonly timeline = new Timeline(by<HTMLCanvasElement>("timeline"), (step) => this.seek(step), () => [this.source.first, this.source.last]);
   private readonly chapters = new Chapters((step) => this.seek(step));
-  private readonly tabs = new Tabs(["agent", "plots", "tree", "settings", "world-panel"], (name) => this.opened(name));
+  private readonly tabs = new Tabs(["agent", "agents", "plots", "tree", "settings", "world-panel"], (name) => this.opened(name));
   private worlds: LiveWorld[] = [];
 
   async open(): Promise<void> {
@@ -77,7 +80,6 @@ export class App {
     if (wanted >= 0) select.value = `live ${wanted}`;
     else if (link.run !== undefined && told.run) select.value = `run ${link.run}`;
     select.addEventListener("change", () => void this.show(select.value));
-    this.bind();
     await this.show(select.value, link);
     requestAnimationFrame(() => this.picture());
   }
@@ -85,7 +87,6 @@ export class App {
   choose(id: number): void {
     if (id !== this.chosen) this.say(id >= 0 ? `Agent ${id} is chosen` : "No agent is chosen");
     this.chosen = id;
-    this.arena.forgetTrail();
     this.panel.forget();
     if (this.source instanceof Live) {
       this.source.chosen = id;
@@ -188,7 +189,7 @@ export class App {
   }
 
   private opened(name: string): void {
-    by("plots").parentElement!.parentElement!.classList.toggle("plotting", name === "plots");
+    by("plots").parentElement!.parentElement!.classList.toggle("plotting", name === "plots" || name === "agents");
     this.panelsDue = 0;
   }
 
@@ -202,7 +203,8 @@ export class App {
       this.start(world, new Map([...link.changes].filter(([path]) => known.has(path))), link.seed ?? 1);
       if (link.step) this.goal = { step: link.step, agent: link.agent ?? -1 };
     }
-    if (link.color) this.paint(link.color);
+    if (link.color) this.colors.choose(link.color);
+    if (link.filter) this.table.write(link.filter);
     const view = link.view ?? readLink(recall("view") ?? "").view;
     if (view) this.arena.look(this.source, view);
     if (link.agent !== undefined && !this.goal) this.choose(link.agent);
@@ -210,6 +212,7 @@ export class App {
       this.now = link.step;
       this.play(false);
     }
+    this.keepLink();
   }
 
   /** The live worlds that are shown: one, or two side by side. */
@@ -239,9 +242,11 @@ export class App {
     const view = former ? this.arena.view(former) : undefined;
     [this.source, this.chosen, this.frame, this.now] = [source, -1, undefined, source.first];
     if (source instanceof Replay) by("settings").replaceChildren(...recordedSettings(source.settings));
-    this.colors = colorings(source);
-    by("color").replaceChildren(...this.colors.map((each) => option(each.name, each.label)));
-    this.paint(this.coloring?.name ?? "");
+    this.colors.offer(source);
+    if (!by("agent").hidden) this.tab("plots"); // nobody is chosen
+    this.arena.forgetTrails();
+    this.selection.open(source);
+    this.table.open(source);
     this.plots = new Plots(source, (step) => this.seek(step));
     this.tree = new Tree(source, (bearers) => (this.arena.marked = bearers), () => this.chosen);
     const beside = (setting: Setting, value: string) => source instanceof Live && this.beside(source, setting, value);
@@ -255,13 +260,13 @@ export class App {
     this.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
 
-  private paint(name: string): void {
-    this.coloring = this.colors.find((each) => each.name === name) ?? this.colors[0]!;
-    by<HTMLSelectElement>("color").value = this.coloring.name;
+  /** Shows at once that something else is to be seen: another color, filter, rectangle or order of the table. */
+  private changed(): void {
     this.panelsDue = 0;
+    this.keepLink();
   }
 
-  private setSpeed(speed: number): void {
+  setSpeed(speed: number): void {
     this.speed = speed;
     by<HTMLSelectElement>("speed").value = String(speed);
   }
@@ -273,8 +278,8 @@ export class App {
     this.frame = before && blend(before, after, this.source.live ? before.step : this.now);
     if (!this.playing) this.skipped = 0;
     else if (this.frame && shown !== undefined && this.frame.step > shown) this.skipped = this.frame.step - shown - 1;
-    const legend = this.arena.draw(this.source, this.frame, this.coloring, this.chosen);
-    this.twin.draw(this.arena, this.now, this.coloring, legend);
+    const legend = this.arena.draw(this.source, this.frame, this.colors.current, this.chosen);
+    this.twin.draw(this.arena, this.now, this.colors.current, legend);
     if (this.frame) this.pictures++;
     const time = performance.now();
     if (time >= this.panelsDue) {
@@ -334,6 +339,7 @@ export class App {
     this.plots?.update(this.frame, this.now);
     this.tree?.update(this.frame);
     this.panel.update(source, this.frame, this.chosen);
+    this.pick();
     by("status").textContent = this.goal ? `going to step ${show(this.goal.step)} …` : source.status();
     const skipped = this.skipped > 0 ? `${counted(Math.round(this.skipped), "step")} skipped` : "";
     by("clock").replaceChildren(
@@ -346,30 +352,17 @@ export class App {
     by("look-follow").setAttribute("aria-pressed", String(this.arena.follow));
     by("look-full").setAttribute("aria-pressed", String(document.fullscreenElement !== null));
     this.notice.about(source, this.now, this.arena.scene.lost, (live, seed) => this.start(live.world, live.changes, seed), () => this.play(true));
-    if (legend) this.legend.update(source, this.arena, this.coloring, legend, this.chosen >= 0);
+    if (legend) this.legend.update(source, this.arena, this.colors.current, legend, this.chosen >= 0);
   }
 
-  private bind(): void {
-    const acts: Record<string, () => void> = {
-      play: () => this.play(!this.playing),
-      "step-on": () => this.step(1),
-      "step-back": () => this.step(-1),
-      "look-whole": () => this.whole(),
-      "look-next": () => this.next(),
-      "look-follow": () => this.follow(!this.arena.follow),
-      "look-full": () => this.fullScreen(),
-      theme: switchTheme,
-      "help-button": () => this.help(),
-    };
-    for (const [name, act] of Object.entries(acts)) by(name).onclick = act;
-    by("look-full").hidden = !document.fullscreenEnabled;
-    by("speed").onchange = () => this.setSpeed(Number(by<HTMLSelectElement>("speed").value));
-    by("color").onchange = () => {
-      this.paint(by<HTMLSelectElement>("color").value);
-      this.keepLink();
-    };
-    by("show-rays").onchange = () => (this.arena.showRays = by<HTMLInputElement>("show-rays").checked);
-    by("show-trail").onchange = () => (this.arena.showTrail = by<HTMLInputElement>("show-trail").checked);
+  /** Rings the agents that are picked out, and lists them. */
+  private pick(): void {
+    const { frame, selection, arena } = this;
+    if (!selection.active) arena.picked.clear();
+    if (!frame || (!selection.active && by("agents").hidden)) return;
+    const picked = selection.of(frame);
+    if (selection.active) arena.picked = new Set(picked.map((i) => frame.id[i]!));
+    this.table.update(frame, picked, this.chosen);
   }
 
   /** Says something to those who listen to the page. */
@@ -384,9 +377,8 @@ export class App {
     const live = source instanceof Live ? { live: source.world.source, seed: source.seed, changes: source.changes } : NOTHING;
     // A live world that goes on, or that was changed by hand, has no step to which the link would lead.
     const step = this.playing || !Number.isFinite(this.now) || (source instanceof Live && source.edited) ? undefined : Math.floor(this.now);
-    const link: Link = { ...live, run: kind === "run" ? Number(index) : undefined, threads: this.threads || undefined, step, view: this.arena.view(source) };
+    const link: Link = { ...live, run: kind === "run" ? Number(index) : undefined, threads: this.threads || undefined, step, color: this.colors.current.name, filter: this.selection.text || undefined, view: this.arena.view(source) };
     if (this.chosen >= 0) link.agent = this.chosen;
-    if (this.coloring !== this.colors[0]) link.color = this.coloring.name;
     history.replaceState(null, "", `#${writeLink(link)}`);
   }
 }

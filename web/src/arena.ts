@@ -6,12 +6,13 @@ import { castRays } from "./rays";
 import { Scene } from "./scene";
 import { noses } from "./smells";
 import type { Source } from "./source";
+import { Trails } from "./trails";
 import type { Frame, Layout, Place, Species } from "./types";
 
 /** Center x, center y, and the zoom as a multiple of that of the whole arena. */
 export type View = [number, number, number];
 
-const TRAIL = 240; // places of the chosen agent that are kept
+const MOST_FOLLOWED = 20; // of the agents that are picked out: so many have trails and rays
 const FAINT = 0.1; // of a smell at its source: how much is left at the rim of what is drawn of it
 const HALO = 0x10000000; // the alpha of that, in a packed color
 
@@ -28,9 +29,10 @@ export class Arena {
   ringColor = ""; // of the rings, by its name in the page's style; without one a species has its own
   follow = false;
   marked = new Set<number>(); // agents of the branch that is chosen in the tree
+  picked = new Set<number>(); // agents that match the filter and the rectangle of the scatter plot
   drawMilliseconds = 0; // of the last frame, on the page's side
   private colors = new Uint32Array(256);
-  private trail: [number, number, number][] = []; // step, x, y
+  private readonly trails = new Trails();
   private fitted = false;
   private moved = false; // whether somebody chose another view than the whole arena
 
@@ -102,8 +104,8 @@ export class Arena {
     return found;
   }
 
-  forgetTrail(): void {
-    this.trail = [];
+  forgetTrails(): void {
+    this.trails.forget();
   }
 
   private drawFrame(source: Source, frame: Frame, coloring: Coloring, chosen: number): Painted["legend"] {
@@ -113,7 +115,7 @@ export class Arena {
     if (this.colors.length < frame.id.length) this.colors = new Uint32Array(frame.id.length * 2);
     const { colors, legend } = paint(coloring, source, frame, this.colors);
     const at = frame.id.indexOf(chosen);
-    if (at >= 0) this.prepareChosen(source, frame, at);
+    this.followed(source, frame, at);
     const foods = foodColors(layout);
     const unknown = pack(parse(styleColor("--quiet")));
     this.drawSmells(layout, frame, foods);
@@ -131,7 +133,8 @@ export class Arena {
       this.scene.disc(frame.x[i]!, frame.y[i]!, radius, known ? colors[i]! : unknown, frame.angle[i]!, mouth, known ? 0 : 0.3, middle);
       if (species > 0 && this.rings) this.scene.disc(frame.x[i]!, frame.y[i]!, radius * 1.14, ring ?? speciesColor(layout, species), 0, 2, 0.16);
     }
-    if (this.marked.size > 0) this.markBranch(source, frame);
+    if (this.picked.size > 0) this.ring(source, frame, this.picked, "--picked", 1.45);
+    if (this.marked.size > 0) this.ring(source, frame, this.marked, "--branch", 1.5);
     if (at >= 0) this.markKin(source, frame, at);
     return legend;
   }
@@ -149,22 +152,18 @@ export class Arena {
     for (let f = 0; f < frame.foodX.length; f++) halo(layout.species.length + frame.foodKind[f]!, frame.foodX[f]!, frame.foodY[f]!, foods[frame.foodKind[f]!]!);
   }
 
-  private prepareChosen(source: Source, frame: Frame, at: number): void {
-    const [x, y] = [frame.x[at]!, frame.y[at]!];
-    if (this.follow) [this.scene.centerX, this.scene.centerY] = [x, y];
-    const last = this.trail[this.trail.length - 1];
-    if (last && last[0] > frame.step) this.trail = [];
-    if (!last || last[0] !== frame.step) this.trail.push([frame.step, x, y]);
-    if (this.trail.length > TRAIL) this.trail.shift();
-    if (this.showTrail) this.drawTrail();
-    if (this.showRays) this.drawRays(source, frame, at);
-  }
-
-  private drawTrail(): void {
-    const [r, g, b] = parse(styleColor("--mark"));
-    for (let i = 1; i < this.trail.length; i++) {
-      const [[, ax, ay], [, bx, by]] = [this.trail[i - 1]!, this.trail[i]!];
-      this.scene.line(ax, ay, bx, by, pack([r, g, b], Math.round((180 * i) / this.trail.length)));
+  /** Trails and rays of the chosen agent and of some that are picked out. */
+  private followed(source: Source, frame: Frame, at: number): void {
+    if (at >= 0 && this.follow) [this.scene.centerX, this.scene.centerY] = [frame.x[at]!, frame.y[at]!];
+    const others: number[] = [];
+    for (let i = 0; this.picked.size > 0 && i < frame.id.length && others.length < MOST_FOLLOWED; i++) {
+      if (i !== at && this.picked.has(frame.id[i]!)) others.push(i);
+    }
+    const all = at >= 0 ? [...others, at] : others;
+    this.trails.note(frame, all);
+    for (const i of all) {
+      if (this.showTrail) this.trails.draw(this.scene, frame.id[i]!, i === at ? "--mark" : "--picked");
+      if (this.showRays) this.drawRays(source, frame, i);
     }
   }
 
@@ -178,10 +177,11 @@ export class Arena {
     }
   }
 
-  private markBranch(source: Source, frame: Frame): void {
-    const color = pack(parse(styleColor("--branch")));
+  /** Draws rings around some agents, in a color of the page's style. */
+  private ring(source: Source, frame: Frame, ids: Set<number>, name: string, size: number): void {
+    const color = pack(parse(styleColor(name)));
     for (let i = 0; i < frame.id.length; i++) {
-      if (this.marked.has(frame.id[i]!)) this.scene.disc(frame.x[i]!, frame.y[i]!, bodyOf(source, frame, i).radius * 1.5, color, 0, 2, 0.16);
+      if (ids.has(frame.id[i]!)) this.scene.disc(frame.x[i]!, frame.y[i]!, bodyOf(source, frame, i).radius * size, color, 0, 2, 0.16);
     }
   }
 

@@ -20,6 +20,8 @@ export interface Coloring {
   /** Value of an agent, from its life and the frame; NaN for unknown. */
   value(life: Life | undefined, frame: Frame, i: number): number;
   scale: "ramp" | "diverging" | "distinct" | "food";
+  /** Whether it is a neutral gene. */
+  neutral?: boolean;
   /** The ends of the scale, which do not depend on the moment that is shown; without it they are those of the frame. */
   ends?: (source: Source, frame: Frame) => [number, number];
   /** The things that it tells apart, where they have names. */
@@ -78,7 +80,10 @@ export function colorings(source: Source): Coloring[] {
     ...(layout.species.length > 1 ? [species] : []),
     { name: "eats", label: `most frequent meal ${counted}`, scale: "food", value: mostEaten },
     ...(source.live ? [lastMeal] : []),
-    ...layout.genes.map((gene, g): Coloring => of(gene.name, gene.title, "diverging", (life) => life?.genome[g] ?? NaN, (life) => life.genome[g]!)),
+    ...layout.genes.map((gene, g): Coloring => ({
+      ...of(gene.name, gene.title, "diverging", (life) => life?.genome[g] ?? NaN, (life) => life.genome[g]!),
+      neutral: gene.role === "neutral",
+    })),
   ];
 }
 

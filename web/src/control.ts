@@ -1,6 +1,26 @@
-// Keys: everything can also be done from the keyboard.
+// Buttons and keys: everything can also be done from the keyboard.
 import type { App } from "./app";
 import { by } from "./element";
+import { switchTheme } from "./preference";
+
+export function bindButtons(app: App): void {
+  const acts: Record<string, () => void> = {
+    play: () => app.play(!app.playing),
+    "step-on": () => app.step(1),
+    "step-back": () => app.step(-1),
+    "look-whole": () => app.whole(),
+    "look-next": () => app.next(),
+    "look-follow": () => app.follow(!app.arena.follow),
+    "look-full": () => app.fullScreen(),
+    theme: switchTheme,
+    "help-button": () => app.help(),
+  };
+  for (const [name, act] of Object.entries(acts)) by(name).onclick = act;
+  by("look-full").hidden = !document.fullscreenEnabled;
+  by("speed").onchange = () => app.setSpeed(Number(by<HTMLSelectElement>("speed").value));
+  by("show-rays").onchange = () => (app.arena.showRays = by<HTMLInputElement>("show-rays").checked);
+  by("show-trail").onchange = () => (app.arena.showTrail = by<HTMLInputElement>("show-trail").checked);
+}
 
 /** Whether what has the focus uses a key itself, as a list does arrows and a button the space bar. */
 function needs(target: HTMLElement, key: string): boolean {
@@ -23,6 +43,7 @@ export function bindKeys(app: App): void {
     t: () => by("show-trail").click(),
     n: () => app.next(),
     a: () => app.tab("agent"),
+    l: () => app.tab("agents"),
     p: () => app.tab("plots"),
     s: () => app.tab("settings"),
     w: () => app.tab("world-panel"),

@@ -1,4 +1,4 @@
-// Lives as a file for a spreadsheet: the columns are called as in the table `agents` of a run.
+// Files for a spreadsheet, and how the browser saves files. The columns of lives are called as in the table `agents` of a run.
 import type { Source } from "./source";
 import type { Life } from "./types";
 
@@ -17,6 +17,9 @@ export function csvOf(source: Source, seed: number, lives: Life[]): string {
   };
   return [names.join(","), ...lives.map(line)].join("\n") + "\n";
 }
+
+/** A table of texts without commas, after the names of its columns. */
+export const csvTable = (names: string[], rows: string[][]): string => [names, ...rows].map((cells) => cells.join(",") + "\n").join("");
 
 /** Lets the browser save a text, a picture or a video as a file. */
 export function save(name: string, content: string | Blob): void {

@@ -12,11 +12,12 @@ const KEYS: [string, string][] = [
   ["N", "chooses the next agent, Esc none"],
   ["F R T", "follow the chosen agent, show its rays, its trail"],
   ["0 X", "the whole arena, the full screen"],
-  ["A P S W", "the panels: agent, plots, settings, world"],
+  ["A L P S W", "the panels: agent, list of agents, plots, settings, world"],
   ["?", "this help"],
 ];
 
 const TOUCH = "Click or tap an agent to choose it. Drag to move; turn the wheel or pinch to zoom.";
+const PICKING = "Agents that match the filter in Agents, or lie in a rectangle dragged in the scatter plot of Plots, have rings in the arena.";
 
 export function showHelp(source: Source): void {
   const box = by<HTMLDialogElement>("help");
@@ -25,7 +26,7 @@ export function showHelp(source: Source): void {
   const heading = element("h2", { text: "Help" });
   heading.id = "help-title";
   const keys = table(KEYS);
-  box.replaceChildren(heading, element("p", { text: TOUCH }), element("h3", { text: "Keys" }), keys, ...thisWorld(source), close);
+  box.replaceChildren(heading, element("p", { text: TOUCH }), element("p", { text: PICKING }), element("h3", { text: "Keys" }), keys, ...thisWorld(source), close);
   box.showModal();
 }
 

@@ -41,6 +41,7 @@ function signs(source: Source, arena: Arena, chosen: boolean): [SVGSVGElement, s
   if (source.obstacles.length > 0) found.push([sign(square(layout.obstacle_color)), "obstacle"]);
   if (layout.species.some((each) => each.smells.length > 0)) found.push([sign(["circle", { r: 8, fill: "--quiet", opacity: 0.35 }]), "where it is smelled"]);
   if (arena.marked.size > 0) found.push([sign(disc(4, BODY), ring(7, "--branch")), "of the chosen branch of the tree"]);
+  if (arena.picked.size > 0) found.push([sign(disc(4, BODY), ring(7, "--picked")), "matches the filter or the rectangle; at most 20 have trails and rays"]);
   if (!chosen) return found;
   found.push([sign(disc(4, BODY), ring(7, "--mark")), "chosen agent"], [sign(disc(4, BODY), ring(7, "--kin")), "its near kin"]);
   if (arena.showRays) found.push([sign(line("--wall"), ["circle", { cx: 7, cy: -4, r: 2.2, fill: "--wall" }]), "ray, in the color of what it sees"]);
@@ -63,7 +64,7 @@ export class Legend {
   }
 
   update(source: Source, arena: Arena, coloring: Coloring, legend: Painted["legend"], chosen: boolean): void {
-    const key = [source.layout.types, source.obstacles.length, coloring.name, coloring.label, legend.low, legend.high, chosen, arena.showRays, arena.showTrail, arena.marked.size > 0].join();
+    const key = [source.layout.types, source.obstacles.length, coloring.name, coloring.label, legend.low, legend.high, chosen, arena.showRays, arena.showTrail, arena.marked.size > 0, arena.picked.size > 0].join();
     if (key === this.shown) return;
     this.shown = key;
     this.scale.replaceChildren(element("strong", { text: `Color: ${coloring.label}` }), ...this.colors(source, coloring, legend));

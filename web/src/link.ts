@@ -9,6 +9,7 @@ export interface Link {
   step?: number;
   agent?: number;
   color?: string;
+  filter?: string; // of the panel Agents
   view?: View;
   changes: Map<string, string>; // of settings, by path
 }
@@ -29,6 +30,7 @@ export function readLink(text: string): Link {
     step: whole(said.get("step")),
     agent: whole(said.get("agent")),
     color: said.get("color") ?? undefined,
+    filter: said.get("filter") ?? undefined,
     view: view?.length === 3 && view.every(Number.isFinite) && view[2]! > 0 ? (view as View) : undefined,
     changes: new Map(pairs.map((each) => [each.slice(0, each.indexOf("=")), each.slice(each.indexOf("=") + 1)])),
   };

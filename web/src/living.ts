@@ -1,4 +1,5 @@
 // Of those who live at the moment that is shown: their ages, and two genes of each.
+import { brush } from "./brush";
 import { element, option, picture, show, styleColor, surface } from "./element";
 import { quantile } from "./scale";
 import type { Source } from "./source";
@@ -83,5 +84,6 @@ export class LivingPlots {
     pen.textAlign = "right";
     pen.fillText(`${this.source.layout.genes[a]!.title} → ${show(limit)}`, width - 2, height / 2 - 4);
     this.scatter.setAttribute("aria-label", `Two genes of ${points.length} agents`);
+    brush.drawn({ canvas: this.scatter, species: Number(this.kind.value), genes: [a, b], limit });
   }
 }

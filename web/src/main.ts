@@ -1,7 +1,7 @@
 // Where the page begins.
 import "./style.css";
 import { App } from "./app";
-import { bindKeys } from "./control";
+import { bindButtons, bindKeys } from "./control";
 import { bindGestures } from "./gesture";
 import { Notice } from "./notice";
 import { recallTheme } from "./preference";
@@ -11,6 +11,7 @@ recallTheme();
 async function begin(): Promise<void> {
   const app = new App();
   Object.assign(window, { hedon: app }); // for a curious person's console, and for tests
+  bindButtons(app);
   await app.open();
   bindKeys(app);
   bindGestures(app);

@@ -23,7 +23,7 @@ export class Tabs {
         by(`tab-${next}`).focus();
       });
     }
-    this.open(panels[0]!);
+    this.open(panels.find((name) => !by(name).hidden)!);
   }
 
   open(name: string): void {

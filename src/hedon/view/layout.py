@@ -153,7 +153,7 @@ def _genes(config: Config, made: dict[str, SpeciesLayout]) -> list[dict[str, str
             "name": name,
             "role": known[name].role,
             "input": "" if known[name].role == "neutral" else name.removeprefix("w_"),
-            "title": name.replace("_", " marker ") if known[name].role == "neutral" else weight_title(name),
+            "title": name.replace("_", " gene ") if known[name].role == "neutral" else weight_title(name),
             "unit": "reward per meal" if name in eaten else "",
             "color": colors[name],
         }

@@ -17,7 +17,7 @@ POLICY = (
 )
 HELD = (
     "assets/story.js",
-    "assets/csv.js",
+    "assets/shared.js",
     "assets/live.worker.js",
     "hedon-relaxed.wasm",
     "hedon.wasm",

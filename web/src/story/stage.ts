@@ -110,7 +110,7 @@ export class Stage {
       this.onMoment(moment);
       this.unseen();
     };
-    this.arena.forgetTrail();
+    this.arena.forgetTrails();
     this.arena.fit(this.live);
     this.wordsDue = 0;
     this.onBegin();
