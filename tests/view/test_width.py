@@ -43,9 +43,14 @@ FEW = [("live", 390, "dark"), ("replay", 1400, "light")]
 def test_axe_finds_nothing(servers, kind, width, ground, watch):
     watched = watch(servers[kind], **sized(width, ground))
     rest(watched)
+    watched.page.locator("#heat").select_option("positions")
+    watched.page.locator("#color").select_option("neutral")
     for panel in PANELS:
         watched.get(f"hedon.tab('{panel}')")
         watched.get("document.querySelectorAll('details').forEach((each) => (each.open = true))")
+        if panel == "agents":
+            watched.page.locator("#filter").fill("agee > 3")
+            watched.until("document.querySelector('#filter-problem').textContent !== ''")
         assert (panel, violations(watched)) == (panel, [])
     watched.page.keyboard.press("?")
     watched.until("document.querySelector('#help').open")

@@ -53,7 +53,7 @@ export class AgentTable {
     csv.id = "save-agents";
     csv.onclick = () => this.save();
     const scroll = element("div", { class: "agents" }, element("table", {}, this.head, this.body));
-    scroll.tabIndex = 0; // it scrolls, also by keys
+    scroll.tabIndex = 0; // so that keys can scroll it
     scroll.setAttribute("role", "region");
     scroll.setAttribute("aria-label", "Table of agents");
     this.host.replaceChildren(
@@ -80,7 +80,7 @@ export class AgentTable {
     this.head.replaceChildren(element("tr", {}, ...this.columns.map((column) => this.header(column))));
   }
 
-  /** Takes the text of a filter, such as that of a link. */
+  /** Takes the text of a filter, as a link has it. */
   write(text: string): void {
     this.filter.value = text;
     this.selection.write(text);
@@ -90,7 +90,7 @@ export class AgentTable {
   update(frame: Frame | undefined, picked: number[], chosen: number): void {
     if (this.host.hidden || !frame) return;
     const { selection, source } = this;
-    const key = [frame.step, source.lives.size, source.last, chosen, this.by, this.down, selection.text, brush.text(this.geneNames())].join();
+    const key = [frame.step, source.lives.size, source.last, chosen, this.by, this.down, selection.text, picked.join()].join("|");
     if (key === this.key) return;
     [this.key, this.frame] = [key, frame];
     this.problem.textContent = selection.problem;

@@ -6,6 +6,7 @@ import { blend } from "./blend";
 import { Chapters } from "./chapters";
 import { ColorList } from "./colorlist";
 import { by, counted, element, option, show } from "./element";
+import { Heat } from "./heat";
 import { showHelp } from "./help";
 import { Legend } from "./legend";
 import { type Link, readLink, writeLink } from "./link";
@@ -57,6 +58,7 @@ export class App {
   private readonly legend = new Legend();
   private readonly notice = new Notice();
   private readonly panel = new AgentPanel((id) => this.choose(id));
+  private readonly heat = new Heat(this.arena);
   private readonly selection = new Selection(() => this.changed());
   private readonly table = new AgentTable(this.selection, () => this.changed(), (id) => this.choose(id));
   private readonly timeline = new Timeline(by<HTMLCanvasElement>("timeline"), (step) => this.seek(step), () => [this.source.first, this.source.last]);
@@ -243,8 +245,9 @@ export class App {
     [this.source, this.chosen, this.frame, this.now] = [source, -1, undefined, source.first];
     if (source instanceof Replay) by("settings").replaceChildren(...recordedSettings(source.settings));
     this.colors.offer(source);
-    if (!by("agent").hidden) this.tab("plots"); // nobody is chosen
+    if (!by("agent").hidden) this.tab("plots"); // no agent is chosen
     this.arena.forgetTrails();
+    this.heat.open(source);
     this.selection.open(source);
     this.table.open(source);
     this.plots = new Plots(source, (step) => this.seek(step));
@@ -340,6 +343,7 @@ export class App {
     this.tree?.update(this.frame);
     this.panel.update(source, this.frame, this.chosen);
     this.pick();
+    this.heat.update();
     by("status").textContent = this.goal ? `going to step ${show(this.goal.step)} …` : source.status();
     const skipped = this.skipped > 0 ? `${counted(Math.round(this.skipped), "step")} skipped` : "";
     by("clock").replaceChildren(

@@ -12,7 +12,7 @@ import type { Frame, Layout, Place, Species } from "./types";
 /** Center x, center y, and the zoom as a multiple of that of the whole arena. */
 export type View = [number, number, number];
 
-const MOST_FOLLOWED = 20; // of the agents that are picked out: so many have trails and rays
+const MOST_FOLLOWED = 20; // agents with trails and rays, of the ones that are picked out
 const FAINT = 0.1; // of a smell at its source: how much is left at the rim of what is drawn of it
 const HALO = 0x10000000; // the alpha of that, in a packed color
 
@@ -30,6 +30,7 @@ export class Arena {
   follow = false;
   marked = new Set<number>(); // agents of the branch that is chosen in the tree
   picked = new Set<number>(); // agents that match the filter and the rectangle of the scatter plot
+  under: ((scene: Scene) => void) | undefined; // draws what is below everything else
   drawMilliseconds = 0; // of the last frame, on the page's side
   private colors = new Uint32Array(256);
   private readonly trails = new Trails();
@@ -85,6 +86,7 @@ export class Arena {
     }
     const [background, ink] = [parse(styleColor("--ground")), pack(parse(styleColor("--wall")))];
     this.scene.begin();
+    this.under?.(this.scene);
     for (const corners of source.obstacles) this.scene.polygon(corners, pack(parse(source.layout.obstacle_color)));
     for (const [ax, ay, bx, by] of source.layout.arena.walls) this.scene.line(ax, ay, bx, by, ink);
     const legend = frame ? this.drawFrame(source, frame, coloring, chosen) : undefined;

@@ -16,7 +16,7 @@ export interface Scatter {
 type Range = [number, number];
 
 export class Brush {
-  /** Called when agents are picked out anew. */
+  /** Called when other agents are picked out. */
   changed = (): void => undefined;
   private area: { species: number; genes: [number, number]; x: Range; y: Range } | undefined;
   private scatter: Scatter | undefined;
@@ -73,7 +73,7 @@ export class Brush {
   private attach(canvas: HTMLCanvasElement): void {
     this.seen.add(canvas);
     canvas.classList.add("brushed");
-    canvas.after(element("p", { class: "quiet", text: "Drag a rectangle to ring its agents in the arena and list them in the panel Agents; a click removes it. The filter there does the same by keys." }));
+    canvas.after(element("p", { class: "quiet", text: "Drag a rectangle to ring its agents in the arena and list them in the panel Agents; a click removes it. With the keyboard, use the filter there." }));
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       this.from = [event.offsetX, event.offsetY];

@@ -63,6 +63,16 @@ export class Film {
     return { before, after };
   }
 
+  /** Shows the frames after a step, in their order, until `take` returns false. Parts read for this are not kept. */
+  async each(after: number, take: (frame: Frame) => boolean): Promise<void> {
+    for (let at = Math.max(this.lastWith(after), 0); at < this.parts.length; at++) {
+      if (this.parts[at]!.steps[1] <= after) continue;
+      const known = this.kept.get(this.parts[at]!.file);
+      const frames = known && known !== "asked" ? known : await this.load(at);
+      for (const frame of frames) if (frame.step > after && !take(frame)) return;
+    }
+  }
+
   /** The last part that has frames at or before a step, where a frame of the step is whole; -1 for none. */
   private lastWith(step: number): number {
     return this.parts.findLastIndex(({ steps }) => steps[0] <= step);

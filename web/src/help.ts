@@ -17,7 +17,7 @@ const KEYS: [string, string][] = [
 ];
 
 const TOUCH = "Click or tap an agent to choose it. Drag to move; turn the wheel or pinch to zoom.";
-const PICKING = "Agents that match the filter in Agents, or lie in a rectangle dragged in the scatter plot of Plots, have rings in the arena.";
+const PICKING = "Agents that match the filter in Agents, or are inside a rectangle dragged in the scatter plot of Plots, have rings in the arena. The map of positions or meals shades the arena by how often agents were, or ate, there.";
 
 export function showHelp(source: Source): void {
   const box = by<HTMLDialogElement>("help");

@@ -41,7 +41,7 @@ function signs(source: Source, arena: Arena, chosen: boolean): [SVGSVGElement, s
   if (source.obstacles.length > 0) found.push([sign(square(layout.obstacle_color)), "obstacle"]);
   if (layout.species.some((each) => each.smells.length > 0)) found.push([sign(["circle", { r: 8, fill: "--quiet", opacity: 0.35 }]), "where it is smelled"]);
   if (arena.marked.size > 0) found.push([sign(disc(4, BODY), ring(7, "--branch")), "of the chosen branch of the tree"]);
-  if (arena.picked.size > 0) found.push([sign(disc(4, BODY), ring(7, "--picked")), "matches the filter or the rectangle; at most 20 have trails and rays"]);
+  if (arena.picked.size > 0) found.push([sign(disc(4, BODY), ring(7, "--picked")), "picked out by filter or rectangle; at most 20 have trails and rays"]);
   if (!chosen) return found;
   found.push([sign(disc(4, BODY), ring(7, "--mark")), "chosen agent"], [sign(disc(4, BODY), ring(7, "--kin")), "its near kin"]);
   if (arena.showRays) found.push([sign(line("--wall"), ["circle", { cx: 7, cy: -4, r: 2.2, fill: "--wall" }]), "ray, in the color of what it sees"]);

@@ -1,4 +1,5 @@
 // A world that the engine runs in this page, as a source of moments.
+import { Bites } from "./bites";
 import { counted } from "./element";
 import { fileAddress, liveWorker } from "./files";
 import { Lives } from "./lives";
@@ -41,6 +42,7 @@ export class Live implements Source {
   readonly lives = new Lives();
   readonly series = new Series();
   readonly windows = new Windows();
+  readonly bites = new Bites();
   readonly acts: { step: number; path: string; value: string }[] = []; // settings that were changed on the way
   readonly first = 0;
   readonly spacing = 1;
@@ -160,6 +162,10 @@ export class Live implements Source {
     return { before: this.frames[Math.max(at, 0)], after: this.frames[at + 1] };
   }
 
+  async moments(after: number, take: (frame: Frame) => boolean): Promise<void> {
+    for (const frame of this.frames) if (frame.step > after && !take(frame)) return;
+  }
+
   private send(order: Order): void {
     this.worker.postMessage(order);
   }
@@ -194,6 +200,7 @@ export class Live implements Source {
     if (moment.edit === "back" && !moment.refused) this.rewind(frame.step, moment.counts);
     if (moment.edit === "change" && !moment.refused) this.acts.push({ step: frame.step, path: this.due[0]!.path, value: this.due[0]!.value });
     for (const end of moment.ends) this.windows.add(end);
+    this.bites.add(moment.bites);
     for (const life of moment.dead) this.lives.put(life);
     for (const life of moment.lives) this.lives.put(life);
     if (this.frames[this.frames.length - 1]?.step === frame.step) this.frames.pop(); // it may have been changed by hand
@@ -209,6 +216,7 @@ export class Live implements Source {
     this.lives.rewind(step);
     this.series.rewind(step);
     this.windows.rewind(step);
+    this.bites.rewind(step);
     this.frames.length = this.frames.findLastIndex((frame) => frame.step < step) + 1;
     this.sampled = { step, births: counts.births!, deaths: counts.deaths! };
   }

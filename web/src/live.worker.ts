@@ -28,6 +28,7 @@ export interface Moment {
   done: number; // steps of this order
   trace: Float32Array; // x, y of the chosen agent after each step of this order, if it asked for them
   over: boolean;
+  bites: Float32Array; // meals since the last moment: step, x, y, and the place among the layout's meals
   ends: WindowEnd[]; // of the windows that ended since the last moment
   edit?: Edit["type"]; // what was done by hand
   digest: string; // "" unless it was asked for and no window is being learned
@@ -45,6 +46,7 @@ let engine: Engine | undefined;
 let layout: Layout | undefined;
 let meals = new LastMeals();
 let ends: WindowEnd[] = [];
+let bites: number[] = [];
 let kept: { step: number; meals: LastMeals } | undefined;
 
 async function module(address: string): Promise<WebAssembly.Module | undefined> {
@@ -92,7 +94,7 @@ async function make(order: Order & { type: "make" }): Promise<Report> {
   layout = order.layout;
   meals = new LastMeals();
   kept = undefined;
-  ends = [];
+  [ends, bites] = [[], []];
   return { type: "made", fused: fresh.fuses, bytes: fresh.bytes, threads, obstacles: obstacles(fresh) };
 }
 
@@ -232,7 +234,10 @@ function advance(world: Engine, order: Order & { type: "advance" }): { done: num
       if (stepped === 0) break;
       done += stepped;
       if (world.mustLearn) ends.push(windowEnd(world));
-      meals.note(world.view("eaten") as Int32Array, layout!.meals.length);
+      meals.note(world.view("eaten") as Int32Array, layout!.meals.length, (slot, kind) => {
+        const [x, y] = ["x", "y"].map((axis) => Number(world.view(`physics.bodies.${axis}`)![slot]));
+        bites.push(world.number("head.step"), x!, y!, kind);
+      });
       if (order.trace && slot >= 0 && Number(world.view("life.agent_id")![slot]) === chosen) {
         for (const axis of ["x", "y"]) trace.push(Number(world.view(`physics.bodies.${axis}`)![slot]));
       }
@@ -279,8 +284,8 @@ function moment(world: Engine, { done, trace, refused, edit }: Told, { chosen, d
   const at = here.id.indexOf(chosen);
   const counts = Object.fromEntries(["births", "deaths"].map((name) => [name, world.sum(`counters.${name}`)]));
   const learning = world.mustLearn ? world.learn(0) : 0;
-  const ended = ends;
-  ends = [];
+  const [ended, eaten] = [ends, Float32Array.from(bites)];
+  [ends, bites] = [[], []];
   return {
     frame: here,
     lives: lives(world, "life", living),
@@ -290,6 +295,7 @@ function moment(world: Engine, { done, trace, refused, edit }: Told, { chosen, d
     learning,
     done,
     trace,
+    bites: eaten,
     ends: ended,
     edit,
     over: living.length === 0,

@@ -5,8 +5,8 @@ export class LastMeals {
   private first = (_slot: number) => -1; // what each ate last before the first look
   private last = new Int8Array(); // by slot, -1 for nothing yet
 
-  /** Looks at the counts after a step: rows of slots, one column for each kind of meal. */
-  note(eaten: Int32Array, kinds: number): void {
+  /** Looks at the counts after a step: rows of slots, one column for each kind of meal. Reports each kind that a slot ate. */
+  note(eaten: Int32Array, kinds: number, ate?: (slot: number, kind: number) => void): void {
     if (this.counts.length !== eaten.length) {
       this.counts = eaten.slice();
       this.last = Int8Array.from({ length: eaten.length / kinds }, (_, slot) => this.first(slot));
@@ -15,7 +15,9 @@ export class LastMeals {
     for (let i = 0; i < eaten.length; i++) {
       if (eaten[i] === this.counts[i]) continue;
       // Counts fall only where a newborn has taken the slot.
-      this.last[Math.floor(i / kinds)] = eaten[i]! > this.counts[i]! ? i % kinds : -1;
+      const more = eaten[i]! > this.counts[i]!;
+      this.last[Math.floor(i / kinds)] = more ? i % kinds : -1;
+      if (more) ate?.(Math.floor(i / kinds), i % kinds);
       this.counts[i] = eaten[i]!;
     }
   }

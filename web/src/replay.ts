@@ -37,6 +37,7 @@ function apart(rows: Map<string, Row>): Row {
 export class Replay implements Source {
   readonly live = false;
   readonly relawed = Infinity;
+  readonly bites = undefined;
   loaded = false;
   readonly lives = new Lives();
   readonly series = new Series();
@@ -125,6 +126,10 @@ export class Replay implements Source {
 
   around(step: number): { before?: Frame; after?: Frame } {
     return this.film.around(step);
+  }
+
+  moments(after: number, take: (frame: Frame) => boolean): Promise<void> {
+    return this.film.each(after, take);
   }
 
   private async ask(file: string, columns?: string[]): Promise<Columns | undefined> {

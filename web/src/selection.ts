@@ -1,4 +1,4 @@
-// Which of the living are picked out: they match the filter and lie in the rectangle of the scatter plot, if there is one.
+// Which of the living are picked out: they match the filter and are inside the rectangle of the scatter plot, if there is one.
 import { brush } from "./brush";
 import { type Filter, parseFilter } from "./filter";
 import { type Measure, measures } from "./measure";

@@ -1,4 +1,5 @@
 // What the page shows: records, or a live world.
+import type { Bites } from "./bites";
 import type { Lives } from "./lives";
 import type { Series } from "./series";
 import type { Frame, Layout, AgentProbe, Place } from "./types";
@@ -19,6 +20,9 @@ export interface Source {
   readonly relawed: number; // the step from which on genes mutate by another law than the layout says; Infinity if they never do
   /** The moments at or before `step` and after it, where they are known; requests the others. */
   around(step: number): { before?: Frame; after?: Frame };
+  /** Shows the known moments after a step, in their order, until `take` returns false. A run reads all its parts for this. */
+  moments(after: number, take: (frame: Frame) => boolean): Promise<void>;
+  readonly bites: Bites | undefined; // where meals were eaten; records do not have it
   agentProbe(): AgentProbe | undefined;
   /** What an agent earned in each window of its life; undefined where nobody knows. */
   earned(id: number): Earned[] | undefined;

@@ -32,7 +32,12 @@ def view(
             help="Write a site for any web server instead of opening the page; with --story alone, also one file.",
         ),
     ] = None,
-    port: Annotated[int, typer.Option(help="Port of the local server; 0 for any free one.", min=0, max=65535)] = 0,
+    port: Annotated[
+        int,
+        typer.Option(
+            help="Port of the local server, which then keeps its address; 0 for any free one.", min=0, max=65535
+        ),
+    ] = 0,
     open_browser: Annotated[bool, typer.Option("--open/--no-open", help="Open the browser.")] = True,
 ) -> None:
     """Watch a run in the browser, or a world that the browser simulates itself.

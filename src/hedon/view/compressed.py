@@ -1,4 +1,4 @@
-"""What the local server sends compressed, by gzip: each content once, however often it is asked for."""
+"""Compresses the answers of the local server with gzip, each content once, however often it is requested."""
 
 import gzip
 import threading
@@ -30,8 +30,8 @@ class Compressed:
         """The content in gzip's format; None if that would not be smaller.
 
         Args:
-            name: Path of the link, whose suffix tells how dense the content is.
-            content: What a browser that takes no gzip would get.
+            name: Path of the link; its suffix gives the kind of file.
+            content: The bytes to compress.
         """
         if PurePosixPath(name).suffix in DENSE:
             return None

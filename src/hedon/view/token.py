@@ -12,7 +12,7 @@ PATTERN = re.compile(rb"[A-Za-z0-9_-]{32}")
 
 
 def fresh_token() -> str:
-    """A token that nobody can guess."""
+    """A random token, too long to guess."""
     return secrets.token_urlsafe(LENGTH)
 
 
