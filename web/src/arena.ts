@@ -162,6 +162,7 @@ export class Arena {
       if (i !== at && this.picked.has(frame.id[i]!)) others.push(i);
     }
     const all = at >= 0 ? [...others, at] : others;
+    if (all.length === 0) return this.trails.forget();
     this.trails.note(frame, all);
     for (const i of all) {
       if (this.showTrail) this.trails.draw(this.scene, frame.id[i]!, i === at ? "--mark" : "--picked");
