@@ -51,7 +51,7 @@ def test_another_world_keeps_the_color_that_somebody_chose(run_folder, watch):
         assert watched.page.locator("#color").input_value() == "age"
 
 
-def test_each_species_has_the_first_weight_that_it_has(tmp_path, watch):
+def test_a_world_of_several_species_opens_with_a_weight(tmp_path, watch):
     folder = record_species(tmp_path / "run", seeds=(1,))
     with serving(run_server(folder)) as server:
         watched = watch(server.link)
