@@ -126,7 +126,7 @@ def _hedon(
 
     \b
     Examples:
-      hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
+      hedon run poison --seeds 1-6 --steps 1024000 --out runs/poison
       hedon view --live
       hedon compare runs/poison runs/baseline
     """

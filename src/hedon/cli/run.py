@@ -71,7 +71,7 @@ def run(
     \b
     Examples:
       hedon run baseline
-      hedon run poison --seeds 1-5 --steps 1024000 --out runs/poison
+      hedon run poison --seeds 1-6 --steps 1024000 --out runs/poison
       hedon run baseline --fidelity released --set population.capacity=100
       hedon run my.toml --set food.normal.growth_rate=0.5 --frames 64
       hedon run baseline --founders runs/a@1000000:0.5,runs/b@1000000:0.5

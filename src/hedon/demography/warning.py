@@ -41,8 +41,11 @@ def warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...]) -> t
     growing = supply(config, own, lambda food: float(factor_at(food.schedule, "growth_rate", 0)))
     begun = fed(config, own, growing)
     if begun < founders:
-        rest = "the others starve" if floor else "the others starve to death"
-        found.append(f"Food is short from the start: it pays for {begun:,.0f} of {founders} founders; {rest}.")
+        rest = "starve" if floor else "starve to death"
+        found.append(
+            f"The food that grows can feed {begun:,.0f} of {founders} founders in the long run; the others {rest}, "
+            "unless few find it at first."
+        )
     lasting = fed(config, own, supply(config, own, lambda food: mean_factor(food.schedule, "growth_rate")))
     if lasting > capacity and LONG_LIFE < best.lifetime < math.inf:
         many = "any number of" if math.isinf(lasting) else f"{lasting:,.0f}"

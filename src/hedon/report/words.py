@@ -86,7 +86,7 @@ def _span(values: pl.Series) -> str:
 
 
 def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
-    """The result of the test; if undecided, also how many times as many steps would decide it at the present rate."""
+    """The result of the test; if undecided, also how long new worlds must be to show the trend, if it is real."""
     score, chance = test["effect"], f"p = {test['p_holm']:.2g}, corrected for {tests} tests against drift"
     if test["p_holm"] <= LEVEL:
         return f"selected {'for' if score > 0 else 'against'} ({chance})."
@@ -94,9 +94,9 @@ def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
         return f"selection is not shown ({chance}), and nothing speaks for it so far."
     # The effect of selection grows with time, that of drift with its square root; the same holds for sums over worlds.
     times = (-normal_quantile(LEVEL / 2 / tests) / score) ** 2 / test["worlds"]
-    after = f"about {max(times, 1.1):.2g} times the steps"
-    wait = "" if seconds is None else f", {_minutes((max(times, 1.1) - 1) * seconds)} more on this machine,"
-    return f"selection is not shown ({chance}). If it goes on like this, {after}{wait} decide it."
+    after = f"new worlds about {max(times, 1.1):.2g} times as long"
+    wait = "" if seconds is None else f" ({_minutes(max(times, 1.1) * seconds)} on this machine)"
+    return f"selection is not shown ({chance}). If the trend is real, {after}{wait} would show it."
 
 
 def _seconds(worlds: Sequence[WorldRecord], runs: Sequence[Run]) -> float | None:

@@ -1,8 +1,8 @@
 """The local server of `hedon view`: read-only, for this machine, and limited to the files that the page needs.
 
-Every link begins with a random token, so that other users, programs and pages that know the port get nothing. For a
+Every link starts with a random token, so that other users, programs and pages that know the port get nothing. For a
 port that the user chose, the token is kept in a file that only they can read, so that links survive a restart. The
-server knows a list of names, and gives the file or data behind a name; it never makes a path out of a request.
+server has a list of names, and returns the file or data for a name; it never builds a path from a request.
 """
 
 import secrets
@@ -45,9 +45,9 @@ class Server(ThreadingHTTPServer):
     """Serves the page on a port of this machine.
 
     Args:
-        data: What the page is told, as `data/<name>.json`.
-        records: The records that it may read, as `data/run/<name>`.
-        port: 0 for any free one, with a new token. Another port always has the token of this user.
+        data: Data of the page, served as `data/<name>.json`.
+        records: Records that the page may read, served as `data/run/<name>`.
+        port: Port to use; 0 for any free one, with a new token. A chosen port always uses the token of this user.
     """
 
     daemon_threads = True
