@@ -84,7 +84,8 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
     tried = np.quantile(-_pulled(seen, shocks, _RATES, best)[0], (tail, 0.5, 1.0 - tail), axis=1)
     high, middle, low = (_rate_where(estimates, -slope) for estimates in tried)
     bounds = (np.nan, np.nan)
-    if p <= SHOWN_LEVEL:
+    found = p <= SHOWN_LEVEL and middle > 0  # a steady course can look unlike drift without being pulled anywhere
+    if found:
         rate = min(max(middle, _RATES[1]), _RATES[-1])
         center = _reachable(seen, optimum)
         errors = _pulled(seen, shocks, np.array([rate]), np.array([center]))[2][0] - center
@@ -95,7 +96,7 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
         strength=middle,
         strength_low=low,
         strength_high=high,
-        optimum=optimum if p <= SHOWN_LEVEL else np.nan,
+        optimum=optimum if found else np.nan,
         optimum_low=float(bounds[0]),
         optimum_high=float(bounds[1]),
         p=p,

@@ -70,3 +70,20 @@ def test_courses_without_a_change_say_nothing() -> None:
     found = reversion([np.arange(20.0) % 3], [np.stack([late] * 8 + [np.arange(20.0) % 2])])
     assert found is not None
     assert found.p == pytest.approx(2 / 10)  # one neutral gene goes back more surely; those that stand still do not
+
+
+def test_a_course_that_is_unlike_drift_but_not_pulled_has_no_optimum():
+    """Steps that shrink: a test against drift may reject, but the strength that fits best is 0."""
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        time = np.linspace(0, 1, int(rng.integers(8, 60)))
+        shocks = np.cumsum(rng.standard_t(2, size=len(time)) * np.exp(-3 * time)) * 0.02
+        course = shocks + rng.random() * (1 - np.exp(-6 * time * rng.random()))
+        found = reversion([course], [np.cumsum(rng.standard_t(2, (300, len(time))), axis=1)])
+        assert found is not None
+        given = found.p <= 0.05 and found.strength > 0
+        assert np.isfinite([found.optimum, found.optimum_low, found.optimum_high]).tolist() == [given] * 3
+        assert not given or found.optimum_low <= found.optimum <= found.optimum_high
+        if found.p <= 0.05 and found.strength == 0:
+            return
+    pytest.fail("no such course among the seeds")

@@ -58,8 +58,8 @@ def reversion_topic(conditions: Conditions) -> list[ResultTable]:
         "An Ornstein-Uhlenbeck process with one optimum and one strength for all worlds, fitted to the mean weight of "
         "the living at equal intervals. strength: share of the distance to the optimum that is gone after a "
         "generation, for small numbers; 0 is Brownian motion. p: chance of a pull this strong among neutral genes "
-        "walked down the same pedigrees; p_holm is corrected for all reward weights. The optimum is given where p is "
-        "at most 0.05. Neutral genes are there as a check."
+        "walked down the same pedigrees; p_holm is corrected for all reward weights. The optimum is given if p is "
+        "at most 0.05 and the strength is above 0. Neutral genes are there as a check."
     )
     return [
         make_table("reversion", "Is a weight held near a value?", rows, note),
