@@ -46,6 +46,7 @@ export class Live implements Source {
   readonly acts: { step: number; path: string; value: string }[] = []; // settings that were changed on the way
   readonly first = 0;
   readonly spacing = 1;
+  readonly others = [];
   readonly loaded = true;
   readonly layout: Layout;
   last = 0;
@@ -84,6 +85,14 @@ export class Live implements Source {
     this.send({ type: "make", text, layout: world.layout, threads: wanted, modules: [fileAddress("hedon-relaxed.wasm"), fileAddress("hedon.wasm")] });
   }
 
+  get title(): string {
+    return this.world.name;
+  }
+
+  get seeds(): number[] {
+    return [this.seed];
+  }
+
   close(): void {
     this.worker.terminate();
   }
@@ -95,6 +104,8 @@ export class Live implements Source {
   get ended(): boolean {
     return this.over;
   }
+
+  readOthers(): void {} // a live world has one seed
 
   earned(id: number): Earned[] {
     return this.windows.of(id, this.lives.get(id)?.birth ?? 0);

@@ -2,37 +2,13 @@
 import { show } from "./element";
 import { Film, numbers, type Columns } from "./film";
 import { Lives } from "./lives";
+import { Population } from "./population";
 import type { Answer, Request } from "./records.worker";
-import { Series } from "./series";
+import type { Series } from "./series";
 import type { Source } from "./source";
 import type { Frame, Layout, Place, RunIndex } from "./types";
 
 const FOLLOW_MS = 2000; // between two looks at a run that goes on
-
-type Row = Record<string, number>;
-
-const COUNTS = /^(alive|births|deaths|learners|agent_steps|eaten_|energy_)/;
-const OF_ONE = /_(sd|q25|median|q75)$/;
-
-/** One row of all species: counts are summed, means are weighted by the living, what is of the whole world stays. */
-function together(rows: Row[]): Row {
-  const out: Row = { ...rows[0]! };
-  for (const name of Object.keys(out)) {
-    const known = rows.filter((row) => !Number.isNaN(row[name]!));
-    const sum = (of: (row: Row) => number) => known.reduce((total, row) => total + of(row), 0);
-    if (name.endsWith("_mean")) out[name] = sum((row) => row[name]! * row.alive!) / sum((row) => row.alive!);
-    else if (/_(max|min)$/.test(name)) out[name] = Math[name.endsWith("_max") ? "max" : "min"](...known.map((row) => row[name]!));
-    else if (OF_ONE.test(name)) out[name] = NaN; // these of all do not follow from those of each
-    else if (COUNTS.test(name)) out[name] = sum((row) => row[name]!);
-  }
-  return out;
-}
-
-/** The numbers of each species by its name: `prey.alive`. */
-function apart(rows: Map<string, Row>): Row {
-  const named = [...rows].flatMap(([species, row]) => Object.entries(row).map(([name, value]) => [`${species}.${name}`, value] as const));
-  return Object.fromEntries(named);
-}
 
 export class Replay implements Source {
   readonly live = false;
@@ -40,13 +16,16 @@ export class Replay implements Source {
   readonly bites = undefined;
   loaded = false;
   readonly lives = new Lives();
-  readonly series = new Series();
+  readonly series: Series;
   readonly layout: Layout;
+  others: Population[] = []; // of the run's other seeds, once somebody asks for them
   private readonly worker = new Worker(new URL("./records.worker.ts", import.meta.url), { type: "module" });
   private readonly waiting = new Map<number, (answer: Answer) => void>();
   private readonly read = new Map<string, number>(); // bytes of the tables' parts that were read
   private readonly film: Film;
-  private interval = { step: -1, rows: new Map<string, Row>() }; // the last one of the population, by species
+  private readonly population: Population;
+  private othersWanted = false;
+  private reading = Promise.resolve(); // tables are read one after the other: rows are added in their order
   private key = 0;
   private trouble = "";
 
@@ -55,13 +34,15 @@ export class Replay implements Source {
     private readonly world = 0,
   ) {
     this.layout = index.layout;
+    this.population = new Population(world, this.seed);
+    this.series = this.population.series;
     this.film = new Film(this.layout, world, (file) => this.ask(file));
     this.worker.onmessage = ({ data }: MessageEvent<Answer>) => {
       this.waiting.get(data.key)?.(data);
       this.waiting.delete(data.key);
     };
     this.film.update(index.files.frames);
-    void this.readTables();
+    void this.inTurn(() => this.readTables());
     if (index.status === "running") setTimeout(() => void this.follow(), FOLLOW_MS);
   }
 
@@ -69,8 +50,12 @@ export class Replay implements Source {
     return new Replay((await (await fetch("data/run.json")).json()) as RunIndex, world);
   }
 
-  get worlds(): number[] {
+  get seeds(): number[] {
     return this.index.seeds;
+  }
+
+  get seed(): number {
+    return this.index.seeds[this.world]!;
   }
 
   get settings(): RunIndex["settings"] {
@@ -109,7 +94,7 @@ export class Replay implements Source {
     if (this.trouble) return this.trouble;
     const damaged = this.index.files.frames.filter((part) => part.damaged).map((part) => part.file);
     if (damaged.length > 0) return `damaged, and left out: ${damaged.join(", ")}`;
-    const seed = `seed ${this.index.seeds[this.world]}`;
+    const seed = `seed ${this.seed}`;
     const none = this.index.files.frames.length === 0 ? "; no positions: run with --frames 64 to see agents move" : "";
     const end = this.index.extinct[this.world];
     const over = typeof end === "number" ? `, died out at step ${show(end)}` : "";
@@ -142,6 +127,24 @@ export class Replay implements Source {
     return answer.columns;
   }
 
+  /** Reads the population of the run's other seeds; from then on they grow as this one does. */
+  readOthers(): void {
+    if (this.othersWanted) return;
+    this.othersWanted = true;
+    void this.inTurn(async () => {
+      const others = this.seeds.map((seed, world) => new Population(world, seed)).filter(({ world }) => world !== this.world);
+      for (const part of this.index.files.population) {
+        const columns = await this.ask(part.file);
+        if (columns) for (const each of others) each.add(columns);
+      }
+      this.others = others;
+    });
+  }
+
+  private inTurn(read: () => Promise<void>): Promise<void> {
+    return (this.reading = this.reading.catch(() => undefined).then(read));
+  }
+
   private async readTables(): Promise<void> {
     for (const table of ["population", "agents"] as const) {
       for (const part of this.index.files[table]) {
@@ -149,26 +152,11 @@ export class Replay implements Source {
         this.read.set(part.file, part.bytes);
         const columns = await this.ask(part.file);
         if (!columns) continue;
-        if (table === "population") this.addPopulation(columns);
+        if (table === "population") for (const each of [this.population, ...this.others]) each.add(columns);
         else this.addLives(columns);
       }
     }
     this.loaded = true;
-  }
-
-  private addPopulation(columns: Columns): void {
-    const step = numbers(columns, "step");
-    const world = numbers(columns, "world");
-    const species = columns.species as string[] | undefined;
-    const names = Object.keys(columns).filter((name) => columns[name] instanceof Float64Array);
-    for (let row = 0; row < step.length; row++) {
-      if (world[row] !== this.world || step[row]! < this.interval.step) continue;
-      if (step[row]! > this.interval.step) this.interval = { step: step[row]!, rows: new Map() };
-      const { rows } = this.interval; // they may begin in the part before, as in old runs
-      rows.set(species?.[row] ?? "", Object.fromEntries(names.map((name) => [name, numbers(columns, name)[row]!])));
-      this.series.rewind(step[row]! - 1);
-      this.series.add(step[row]!, rows.size === 1 ? [...rows.values()][0]! : { ...together([...rows.values()]), ...apart(rows) });
-    }
   }
 
   private addLives(columns: Columns): void {
@@ -207,7 +195,7 @@ export class Replay implements Source {
       if (response.ok) this.index = (await response.json()) as RunIndex;
       this.film.update(this.index.files.frames);
       this.trouble = "";
-      await this.readTables();
+      await this.inTurn(() => this.readTables());
     } catch {
       this.trouble = "the server of `hedon view` has ended";
     }

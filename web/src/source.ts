@@ -8,6 +8,10 @@ import type { Earned } from "./windows";
 /** Where moments come from: records, or a world that runs. */
 export interface Source {
   readonly layout: Layout;
+  readonly title: string; // of its files
+  readonly seed: number;
+  readonly seeds: number[]; // of all worlds of its run
+  readonly others: readonly { seed: number; series: Series }[]; // of the run, as far as they are read
   readonly live: boolean;
   readonly obstacles: Place[][]; // their corners
   readonly first: number;
@@ -18,6 +22,8 @@ export interface Source {
   readonly series: Series;
   readonly loaded: boolean; // whether all lives that are recorded so far are known
   readonly relawed: number; // the step from which on genes mutate by another law than the layout says; Infinity if they never do
+  /** Reads those of the run's other seeds. */
+  readOthers(): void;
   /** The moments at or before `step` and after it, where they are known; requests the others. */
   around(step: number): { before?: Frame; after?: Frame };
   /** Shows the known moments after a step, in their order, until `take` returns false. A run reads all its parts for this. */
