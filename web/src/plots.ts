@@ -1,146 +1,157 @@
 // The plots beside the world, in step with the time line; the page draws nothing that the layout does not name.
-import uPlot from "uplot";
-import "uplot/dist/uPlot.min.css";
+import { Curves, type Choice, type Line } from "./curves";
+import { Density } from "./density";
+import { Distributions } from "./distribution";
 import { drift, type Band } from "./drift";
-import { by, element, show, styleColor } from "./element";
-import { SAMPLE_STEPS } from "./live";
+import { by, element, option, show, styleColor } from "./element";
 import { LivingPlots } from "./living";
+import { Plot, type Content, type View } from "./plot";
+import { recall, remember } from "./preference";
 import { columnOf } from "./series";
+import { WINDOWS } from "./smooth";
 import type { Source } from "./source";
 import type { Frame, Species } from "./types";
 
-const HEIGHT = 140;
-const TALL = 190; // of a plot of a weight
-
-interface Line {
-  name: string; // column
-  label: string;
-  color: string;
-}
-
-interface Plot {
-  chart: uPlot;
-  height: number;
-  data: () => uPlot.AlignedData;
-  empty: HTMLElement; // what is said while there is nothing to see
-  judge?: (at: number) => void;
-}
-
-export class Plots {
+export class Plots implements View {
+  zoom: [number, number] | undefined;
+  now = 0;
   private plots: Plot[] = [];
   private points = -1;
   private known = 0; // lives of a replay that the bands are of
   private theme = "";
-  private now = 0;
+  private seeds = 0; // other ones that are drawn
+  private otherRows = 0;
+  private readonly choice: Choice;
+  private readonly distributions = new Map<Species, Distributions>();
   private readonly living: LivingPlots;
   private readonly host = by<HTMLDivElement>("plots");
+  private readonly whole = element("button", { text: "Whole time", title: "Shows all steps again, as does a double click on a plot" });
 
   constructor(
     private readonly source: Source,
-    private readonly seek: (step: number) => void,
+    readonly seek: (step: number) => void,
   ) {
     const { layout } = source;
-    this.host.replaceChildren(element("h2", { text: "Plots", class: "unseen" }));
+    const window = Number(recall("smoothing"));
+    this.choice = { window: WINDOWS.includes(window) ? window : 1, seeds: false };
+    this.host.replaceChildren(element("h2", { text: "Plots", class: "unseen" }), this.tools());
     this.theme = styleColor("--quiet");
     for (const species of layout.species) this.addWeights(species);
-    const each = (name: string): Line[] => layout.species.map((species) => ({ name: columnOf(layout, species, name), label: species.name, color: species.color }));
-    const foods = (what: string): Line[] => layout.foods.map((food) => ({ name: `${what}_${food.name}`, label: food.name, color: food.color }));
-    this.add("agents alive", "agents", each("alive"));
-    this.add("mean energy", "energy", each("energy_mean"));
-    this.add("food present", "pieces", foods("food"));
-    if (!source.live) this.add("food eaten since the row before", "pieces", foods("eaten"));
+    const each = (column: string): Line[] => layout.species.map(({ name, color }, i) => ({ name: columnOf(layout, layout.species[i]!, column), column, species: name, label: name, color }));
+    const foods = (what: string): Line[] => layout.foods.map(({ name, color }) => ({ name: `${what}_${name}`, column: `${what}_${name}`, species: "", label: name, color }));
+    this.addCurves("agents alive", "agents", each("alive"));
+    this.addCurves("mean energy", "energy", each("energy_mean"));
+    this.addCurves("food present", "pieces", foods("food"));
+    if (!source.live) this.addCurves("food eaten since the row before", "pieces", foods("eaten"));
     this.living = new LivingPlots(source);
     this.host.append(...this.living.parts);
   }
 
   update(frame: Frame | undefined, now: number): void {
-    this.now = now;
+    this.now = Math.min(now, this.source.last);
     if (this.host.hidden) return;
     const { step } = this.source.series;
     const theme = styleColor("--quiet");
-    const { lives, live, loaded } = this.source;
+    const { lives, live, loaded, others } = this.source;
     const known = live || !loaded ? 0 : lives.size; // a replay reads lives after the series, and its bands need them
-    const grown = step.length !== this.points || known !== this.known || theme !== this.theme;
-    [this.points, this.known, this.theme] = [step.length, known, theme];
+    const otherRows = this.choice.seeds ? others.reduce((sum, each) => sum + each.series.step.length, 0) : 0;
+    const grown = step.length !== this.points || known !== this.known || theme !== this.theme || otherRows !== this.otherRows;
+    [this.points, this.known, this.theme, this.otherRows] = [step.length, known, theme, otherRows];
+    const seeds = this.choice.seeds ? others.length : 0;
+    if (seeds !== this.seeds) this.remake(seeds);
+    const worked = new Set([...this.distributions].filter(([, each]) => each.advance()).map(([, each]) => each));
     const width = Math.max(this.host.clientWidth - 28, 100);
-    const at = step.findLastIndex((each) => each <= now);
-    for (const { chart, height, data, empty, judge } of this.plots) {
-      if (chart.width !== width) chart.setSize({ width, height });
-      if (grown) chart.setData(data());
-      else chart.redraw(false);
-      empty.hidden = step.length > 1;
-      empty.textContent = this.source.live ? `Fills from step ${show(2 * SAMPLE_STEPS)} on: a point each ${SAMPLE_STEPS} steps.` : "Fills with the second row of the table population.";
-      judge?.(at);
+    const at = step.findLastIndex((each) => each <= this.now);
+    for (const plot of this.plots) {
+      plot.update(width, grown || (plot.content instanceof Density && worked.has(plot.content.distributions)));
+      plot.judge?.(at);
     }
     if (frame) this.living.draw(frame);
   }
 
-  /** A plot for each weight of the reward, with the band of drift and what it says. */
+  /** Shows a range of steps in all plots, or all steps again. */
+  setZoom(zoom: [number, number] | undefined): void {
+    const steps = this.plots[0]!.chart.data[0];
+    const [first, last] = [steps[0] ?? 0, steps[steps.length - 1] ?? 0];
+    const range = zoom && ([Math.max(Math.round(zoom[0]), first), Math.min(Math.round(zoom[1]), last)] as [number, number]);
+    if (range && range[1] - range[0] < 1) return;
+    this.zoom = range && (range[0] > first || range[1] < last) ? range : undefined;
+    this.whole.disabled = !this.zoom;
+    for (const plot of this.plots) plot.rescale();
+  }
+
+  /** The name of a plot's file. */
+  file(name: string): string {
+    return `${this.source.title}-s${this.source.seed}-${name}`;
+  }
+
+  /** What is chosen for all plots at once. */
+  private tools(): HTMLElement {
+    const { source, choice, whole } = this;
+    const smoothing = element("select");
+    smoothing.id = "smoothing";
+    smoothing.append(...WINDOWS.map((window) => option(String(window), window === 1 ? "off" : `${window} rows`)));
+    smoothing.value = String(choice.window);
+    smoothing.onchange = () => {
+      choice.window = Number(smoothing.value);
+      remember("smoothing", smoothing.value);
+      this.remake(this.seeds);
+    };
+    whole.id = "whole-time";
+    whole.disabled = true;
+    whole.onclick = () => this.setZoom(undefined);
+    const tools = element("div", { class: "row plot-tools" }, element("label", {}, "Smoothing ", smoothing));
+    if (source.seeds.length > 1) {
+      const seeds = Object.assign(element("input"), { type: "checkbox", id: "all-seeds" });
+      seeds.onchange = () => {
+        choice.seeds = seeds.checked;
+        if (seeds.checked) source.readOthers();
+      };
+      tools.append(element("label", { class: "check" }, seeds, ` all seeds (${source.seeds.length})`));
+    }
+    tools.append(whole);
+    return tools;
+  }
+
+  private remake(seeds: number): void {
+    this.seeds = seeds;
+    for (const plot of this.plots) if (plot.content instanceof Curves) plot.remake();
+  }
+
+  /** Two plots for each weight of the reward: its mean with the band of drift and what it says, and its distribution. */
   private addWeights(species: Species): void {
     const { layout, series } = this.source;
     const owner = layout.species.length > 1 ? `${species.name}: ` : "";
+    const distributions = new Distributions(this.source, species);
+    this.distributions.set(species, distributions);
     species.genes.forEach((g, i) => {
       const gene = layout.genes[g]!;
       if (gene.role === "neutral") return;
-      const name = columnOf(layout, species, `${gene.name}_mean`);
+      const column = `${gene.name}_mean`;
+      const name = columnOf(layout, species, column);
       const said = element("span", { class: "verdict" });
       const unit = gene.unit ? `${gene.unit}, mean of the living` : "mean of the living";
-      const plot = this.add(`${owner}${gene.title}`, unit, [{ name, label: gene.title, color: gene.color }], () => drift(this.source, species, i), said);
+      const line: Line = { name, column, species: species.name, label: gene.title, color: gene.color };
+      const plot = this.addCurves(`${owner}${gene.title}`, unit, [line], () => drift(this.source, species, i), said);
       plot.judge = (at) => {
         const band = drift(this.source, species, i);
         const value = series.get(name)[at];
         said.textContent = typeof band === "string" ? band : judged(value, band, at);
         said.dataset.outside = String(typeof band !== "string" && outside(value, band, at));
       };
+      if (gene.role === "reward") this.add(new Density(this.source, species, gene, distributions));
     });
   }
 
-  private add(title: string, unit: string, lines: Line[], band?: () => Band | string, verdict?: HTMLElement): Plot {
-    const { series } = this.source;
-    const banded = band !== undefined;
-    const data = () => {
-      const columns = lines.map(({ name }) => fitted(series.get(name), series.step.length));
-      const limits = band?.();
-      const nothing = series.step.map(() => null);
-      const { high, low } = typeof limits === "object" ? limits : { high: nothing, low: nothing };
-      return [series.step, ...columns, ...(banded ? [high, low] : [])] as uPlot.AlignedData;
-    };
-    const drawn: uPlot.Series[] = lines.map(({ label, color }) => ({ label, stroke: color, width: 2, points: { show: false } }));
-    if (banded) for (const label of ["drift, high", "drift, low"]) drawn.push({ label, stroke: "#8889", dash: [4, 4], points: { show: false } });
-    const axis: uPlot.Axis = { stroke: () => styleColor("--quiet"), grid: { stroke: "#8882", width: 1 }, ticks: { show: false }, size: 52, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" };
-    const height = band ? TALL : HEIGHT;
-    const options: uPlot.Options = {
-      width: 300,
-      height,
-      legend: { show: false },
-      cursor: { sync: { key: "time" }, y: false },
-      scales: { x: { time: false } },
-      series: [{ label: "step" }, ...drawn],
-      bands: banded ? [{ series: [lines.length + 1, lines.length + 2], fill: "#8883" }] : [],
-      axes: [{ ...axis, size: 30, label: "step", labelSize: 16 }, axis],
-      hooks: { draw: [(chart) => this.markNow(chart)] },
-    };
-    const heading = element("h3", { class: "plot-title" }, `${title} [${unit}]`);
-    if (lines.length > 1) heading.append(...key(lines).flatMap((each) => [" ", each]));
-    const empty = element("p", { class: "empty" });
-    const frame = element("div", { class: "plot" }, empty);
-    this.host.append(heading, ...(verdict ? [verdict] : []), frame);
-    const chart = new uPlot(options, data(), frame);
-    chart.over.addEventListener("click", () => {
-      const step = chart.posToVal(chart.cursor.left ?? -1, "x");
-      if (Number.isFinite(step)) this.seek(step);
-    });
-    const plot: Plot = { chart, height, data, empty };
+  private addCurves(title: string, unit: string, lines: Line[], band?: () => Band | string, verdict?: HTMLElement): Plot {
+    return this.add(new Curves(this.source, this.choice, title, unit, lines, band), verdict);
+  }
+
+  private add(content: Content, verdict?: HTMLElement): Plot {
+    const plot = new Plot(content, this, verdict);
+    this.host.append(...plot.parts);
     this.plots.push(plot);
     return plot;
-  }
-
-  private markNow(chart: uPlot): void {
-    const x = chart.valToPos(this.now, "x", true);
-    const { left, width } = chart.bbox;
-    if (!(x >= left && x <= left + width)) return; // it would cover the labels of the axis
-    chart.ctx.fillStyle = styleColor("--mark");
-    chart.ctx.fillRect(x - 1, chart.bbox.top, 2, chart.bbox.height);
   }
 }
 
@@ -150,16 +161,4 @@ function judged(value: number | undefined, band: Band, at: number): string {
   if (value === undefined || at < 0 || Number.isNaN(value) || band.low[at] == null) return "";
   const range = `${show(band.low[at]!, 3)} to ${show(band.high[at]!, 3)}`;
   return `${show(value, 3)}: ${outside(value, band, at) ? "outside" : "within"} drift (${range})`;
-}
-
-function key(lines: Line[]): HTMLElement[] {
-  return lines.map(({ label, color }) => {
-    const dot = element("b", { text: "●" });
-    dot.style.color = color;
-    return element("span", {}, dot, ` ${label}`);
-  });
-}
-
-function fitted(column: number[], length: number): (number | null)[] {
-  return Array.from({ length }, (_, i) => (Number.isFinite(column[i]) ? column[i]! : null));
 }

@@ -1,0 +1,31 @@
+// A finger that moves sideways on a plot drags as a mouse does; up and down it scrolls the page, as the style says.
+
+const SIDEWAYS = 8; // pixels from which on a touch is a drag
+
+export function dragByFinger(over: HTMLElement): void {
+  let start: PointerEvent | undefined;
+  let dragging = false;
+  const act = (type: string, { clientX, clientY }: PointerEvent) =>
+    over.dispatchEvent(new MouseEvent(type, { clientX, clientY, bubbles: true, movementX: 1 })); // the chart ignores moves by nothing
+  const end = (event: PointerEvent) => {
+    if (start && dragging) act("mouseup", event);
+    start = undefined;
+  };
+  over.addEventListener("pointerdown", (event) => {
+    if (event.pointerType !== "touch" || !event.isPrimary) return;
+    [start, dragging] = [event, false];
+  });
+  over.addEventListener("pointermove", (event) => {
+    if (!start || event.pointerId !== start.pointerId) return;
+    if (!dragging && Math.abs(event.clientX - start.clientX) > SIDEWAYS) {
+      dragging = true;
+      act("mousedown", start);
+    }
+    if (dragging) act("mousemove", event);
+  });
+  over.addEventListener("pointerup", end);
+  over.addEventListener("pointercancel", () => {
+    if (start && dragging) act("mousemove", start); // back to where it began: it chooses nothing
+    if (start) end(start);
+  });
+}
