@@ -2,6 +2,7 @@
 import { readFileSync } from "node:fs";
 import { defineConfig } from "vite";
 
+// What page and article share is one file; Vite would name it after any of its modules, and the name is in `single.py`.
 const output = {
   entryFileNames: "assets/[name].js",
   chunkFileNames: "assets/shared.js",

@@ -3,15 +3,16 @@ import type uPlot from "uplot";
 import type { Band } from "./drift";
 import { show } from "./element";
 import { SAMPLE_STEPS } from "./live";
-import type { Content, Key } from "./plot";
+import type { Content } from "./plot";
+import type { Key } from "./plotfile";
 import type { Series } from "./series";
 import { smooth, type Values } from "./smooth";
 import type { Source } from "./source";
 
 const HEIGHT = 140;
 const TALL = 190; // of a plot of a weight
-const RAW = "73"; // opacity of the numbers behind their running mean
-const OTHER = "99"; // and of the lines of the other seeds
+const RAW = "4d"; // opacity of the numbers behind their running mean
+const OTHER = "b3"; // and of the lines of the other seeds
 
 export interface Line extends Key {
   name: string; // in the series
@@ -52,7 +53,7 @@ export class Curves implements Content {
     const { choice, others } = this;
     const notes: Key[] = [];
     if (typeof this.band?.() === "object") notes.push({ label: "gray: 95 % of neutral genes (drift)", color: "--quiet" });
-    if (choice.window > 1) notes.push({ label: `mean of ${choice.window} rows; faint: each row`, color: "--quiet" });
+    if (choice.window > 1) notes.push({ label: `line: mean of ${choice.window} rows; faint: each row`, color: "--quiet" });
     if (others.length > 0) notes.push({ label: `thin: seeds ${others.map(({ seed }) => seed).join(", ")}; thick: seed ${this.source.seed}`, color: "--quiet" });
     return notes;
   }
@@ -60,7 +61,7 @@ export class Curves implements Content {
   series(): uPlot.Series[] {
     const { lines } = this;
     const others = this.others.flatMap(() => lines.map(({ color }): uPlot.Series => ({ stroke: color + OTHER, width: 1 })));
-    const raw = this.smoothed ? lines.map(({ color }): uPlot.Series => ({ stroke: color + RAW, width: 1 })) : [];
+    const raw = this.smoothed ? lines.map(({ color }): uPlot.Series => ({ stroke: color + RAW, width: 2 })) : [];
     const own = lines.map(({ label, color }): uPlot.Series => ({ label, stroke: color, width: 2 }));
     const limits = this.band ? ["drift, high", "drift, low"].map((label): uPlot.Series => ({ label, stroke: "#8889", dash: [4, 4] })) : [];
     return [...others, ...raw, ...own, ...limits];

@@ -2,7 +2,8 @@
 import type uPlot from "uplot";
 import { element, show, styleColor } from "./element";
 import { PARTS, type Distributions, type Quantiles } from "./distribution";
-import type { Content, Key } from "./plot";
+import type { Content } from "./plot";
+import type { Key } from "./plotfile";
 import type { Source } from "./source";
 import type { Gene, Species } from "./types";
 
@@ -33,13 +34,13 @@ export class Density implements Content {
     const { layout } = source;
     const owner = layout.species.length > 1 ? species.name : "";
     this.title = `${owner ? `${owner}: ` : ""}${gene.title}, distribution`;
-    this.unit = gene.unit ? `${gene.unit}, of the living` : "of the living";
+    this.unit = gene.unit || "of the living";
     this.lines = [{ label: "median, 25–75 %, 5–95 %", color: "--ink" }];
     this.file = `${owner ? `${owner}-` : ""}${gene.name}_distribution`;
   }
 
   notes(): Key[] {
-    return [this.lines[0]!, { label: "the darker, the more agents", color: this.gene.color }];
+    return [this.lines[0]!, { label: "stronger color: more agents", color: this.gene.color }];
   }
 
   series(): uPlot.Series[] {

@@ -16,6 +16,14 @@ const KEYS: [string, string][] = [
   ["?", "this help"],
 ];
 
+const PLOTS: [string, string][] = [
+  ["Move over a plot", "shows the values at a step, in all plots"],
+  ["Click", "goes to the step"],
+  ["Drag", "zooms in time, in all plots; a double click shows all steps again"],
+  ["← → Home End", "on a plot that has the focus: the values of another row; Enter goes to it"],
+  ["+ −", "there: zoom in and out"],
+];
+
 const TOUCH = "Click or tap an agent to choose it. Drag to move; turn the wheel or pinch to zoom.";
 const PICKING = "Agents that match the filter in Agents, or are inside a rectangle dragged in the scatter plot of Plots, have rings in the arena. The map of positions or meals shades the arena by how often agents were, or ate, there.";
 
@@ -26,7 +34,7 @@ export function showHelp(source: Source): void {
   const heading = element("h2", { text: "Help" });
   heading.id = "help-title";
   const keys = table(KEYS);
-  box.replaceChildren(heading, element("p", { text: TOUCH }), element("p", { text: PICKING }), element("h3", { text: "Keys" }), keys, ...thisWorld(source), close);
+  box.replaceChildren(heading, element("p", { text: TOUCH }), element("p", { text: PICKING }), element("h3", { text: "Keys" }), keys, element("h3", { text: "Plots" }), table(PLOTS), ...thisWorld(source), close);
   box.showModal();
 }
 

@@ -4,16 +4,11 @@ import "uplot/dist/uPlot.min.css";
 import { save } from "./csv";
 import { element, show, styleColor } from "./element";
 import { dragByFinger } from "./finger";
-import { savePicture } from "./plotfile";
+import { savePicture, type Key } from "./plotfile";
 
 const DRAG = 5; // pixels; less is a click
 const OUTSIDE = -10; // pixels: where a chart has a cursor that is on none
 const CLOSER = 2; // times that a key narrows the range of steps
-
-export interface Key {
-  label: string;
-  color: string; // of the page's style if it begins with "--"
-}
 
 /** What a plot shows. Its lines may be others after `View.changed`: the chart is then made again. */
 export interface Content {
@@ -40,6 +35,7 @@ export interface View {
   setZoom(zoom: [number, number] | undefined): void;
   seek(step: number): void;
   file(name: string): string;
+  world: string; // its run and seed, for pictures
 }
 
 export class Plot {
@@ -125,6 +121,7 @@ export class Plot {
     return {
       width: size(width),
       height: size(content.height),
+      padding: [size(10), size(32), 0, 0], // half of the last step's label is right of the plot
       legend: { show: false },
       cursor: {
         y: false,
@@ -207,7 +204,7 @@ export class Plot {
 
   private async picture(): Promise<void> {
     const { content, chart, view } = this;
-    const title = `${content.title} [${content.unit}]`;
+    const title = `${content.title} [${content.unit}] (${view.world})`;
     const keys = [...(content.lines.length > 1 ? content.lines : []), ...content.notes()];
     const made = (times: number) => [this.options(chart.width, times), content.data()] as const;
     await savePicture(view.file(`${content.file}.png`), title, keys, made);

@@ -2,11 +2,16 @@
 import uPlot from "uplot";
 import { save } from "./csv";
 import { styleColor } from "./element";
-import type { Key } from "./plot";
 
 const TIMES = 2;
 const PAD = 12; // pixels of the page
 const LINE = 18; // height of a line of text
+
+/** What a color means. */
+export interface Key {
+  label: string;
+  color: string; // of the page's style if it begins with "--"
+}
 
 /** The parts of a text that fit into lines of a width, and where each is. */
 function placed(pen: CanvasRenderingContext2D, keys: Key[], width: number): { key: Key; x: number; line: number }[] {

@@ -80,6 +80,10 @@ export class Plots implements View {
     for (const plot of this.plots) plot.rescale();
   }
 
+  get world(): string {
+    return `${this.source.title}, seed ${this.source.seed}`;
+  }
+
   /** The name of a plot's file. */
   file(name: string): string {
     return `${this.source.title}-s${this.source.seed}-${name}`;

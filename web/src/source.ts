@@ -22,7 +22,7 @@ export interface Source {
   readonly series: Series;
   readonly loaded: boolean; // whether all lives that are recorded so far are known
   readonly relawed: number; // the step from which on genes mutate by another law than the layout says; Infinity if they never do
-  /** Reads those of the run's other seeds. */
+  /** Reads the numbers of the run's other seeds. */
   readOthers(): void;
   /** The moments at or before `step` and after it, where they are known; requests the others. */
   around(step: number): { before?: Frame; after?: Frame };
