@@ -183,8 +183,9 @@ def _path_of(source: str | Path) -> Path | None:
             raise ConfigError(
                 source, [Problem("", "there is no such preset, and a file's name ends with .toml", None, near)]
             )
-        known = "there is no such preset (there are " + ", ".join(PRESETS) + "); a file's name ends with .toml"
-        raise ConfigError(source, [Problem("", known, nearest=nearest(source, PRESETS))])
+        near = nearest(source, PRESETS)
+        known = "" if near else f" (there are {', '.join(PRESETS)}); a file's name ends with .toml"
+        raise ConfigError(source, [Problem("", f"there is no such preset{known}", nearest=near)])
     return None
 
 

@@ -101,7 +101,9 @@ def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[
                 if isinstance(below, Mapping):
                     values[name][each] = _section(inner[name].type, below, f"{place}.{each}.", problems)
                 else:
-                    problems.append(Problem(f"{place}.{each}", "must be a table", format_value(below)))
+                    kind = next((k for k, section in value.items() if isinstance(section, Mapping)), f"<{name}>")
+                    near = f"{place}.{kind}.{each}" if each in settings(inner[name].type) else None
+                    problems.append(Problem(f"{place}.{each}", "must be a table", format_value(below), near))
     return replace(default, **values)
 
 

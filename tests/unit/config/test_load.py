@@ -148,8 +148,13 @@ def test_removed_kinds_can_be_too_many() -> None:
     assert "a new kind must say what it gives" in message
 
 
+def test_a_setting_without_its_kind_names_the_place() -> None:
+    message = problems("poison", overrides=["food.growth_rate=1"])
+    assert "food.growth_rate = 1: must be a table; did you mean food.normal.growth_rate?" in message
+
+
 def test_unknown_preset_names_the_nearest() -> None:
-    assert "did you mean relocation?" in problems("relocaton")
+    assert problems("relocaton").endswith("there is no such preset; did you mean relocation?")
     assert "(there are baseline, small" in problems("zzz")
 
 
