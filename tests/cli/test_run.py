@@ -241,3 +241,11 @@ def test_seeds_are_read(text, seeds):
 def test_seeds_that_are_none_are_refused(text):
     with pytest.raises(hedon.ArgumentError, match="seeds: "):
         parse_seeds(text)
+
+
+def test_a_report_says_how_to_watch_a_run_that_has_frames(tmp_path):
+    for name, frames in (("seen", ("--frames", "16")), ("unseen", ())):
+        answer = answer_of("run", "small", "--steps", "64", *frames, "--out", name, cwd=tmp_path)
+        assert answer.returncode == 0, answer.stderr
+        page = (tmp_path / name / "report.md").read_text(encoding="utf-8")
+        assert ("run hedon view with this folder." in page) == (name == "seen")

@@ -181,7 +181,10 @@ def _snapshots(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[
 def _world(run: Run, snapshot: Snapshot) -> NamedFigure:
     focus = telling_agent(snapshot)
     colors = food_colors(snapshot.food_kinds, run.manifest.food_colors)
-    return WORLD.drawn(draw_world(snapshot, colors, [] if focus is None else [focus]))
+    named = WORLD.drawn(draw_world(snapshot, colors, [] if focus is None else [focus]))
+    if not run.manifest.frames:
+        return named
+    return replace(named, caption=f"{named.caption} To watch how it got there, run hedon view with this folder.")
 
 
 def _condition_of(run: Run, analysis: Analysis) -> str | None:
