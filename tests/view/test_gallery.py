@@ -154,10 +154,12 @@ def test_the_exercises_have_places_that_exist_and_a_data_sheet():
 
 def test_the_exercises_name_what_the_article_has():
     """Sliders and buttons are in italics; a pair must find them."""
-    page = "".join(
-        (STORY / f"{name}.html").read_text() for name in ("creature", "learning", "family", "evolve", "contest")
-    )
+    scenes = [STORY / f"{name}.html" for name in ("creature", "learning", "family", "evolve", "contest")]
+    page = "".join(path.read_text() for path in (*scenes, STORY.parent.parent / "story.html"))
     buttons = set(re.findall(r"<button[^>]*>([^<]+)", page))
+    buttons |= set(
+        re.findall(r'run.textContent = .*\? "([^"]+)" : "Let it learn"', (STORY / "learning.ts").read_text())
+    )
     sliders = {name.strip() for name in re.findall(r"<label[^>]*>([^<]+)<(?:input|span)", page)}
     text = " ".join((TEACHING / "README.md").read_text().split())
     stressed = {"link", "learned", "before"}

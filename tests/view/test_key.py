@@ -65,7 +65,7 @@ def test_the_tab_key_reaches_every_control(watched):
     )
     assert {"play", "look-whole", "timeline", "theme"} <= wanted
     reached = set()
-    for _ in range(40):
+    for _ in range(100):  # each plot has three controls
         watched.page.keyboard.press("Tab")
         name, outline = watched.get(
             "[document.activeElement.id, getComputedStyle(document.activeElement).outlineStyle]"
