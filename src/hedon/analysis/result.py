@@ -55,8 +55,8 @@ def over_worlds(
     results = []
     for key, group in rows.group_by(["condition", *by], maintain_order=True):
         for column, label in quantities.items():
-            possible = within if isinstance(within, tuple) else within.get(column, ANY)
-            interval = mean_interval(group[column].to_list(), within=possible)
+            bounds = within if isinstance(within, tuple) else within.get(column, ANY)
+            interval = mean_interval(group[column].to_list(), within=bounds)
             head = dict(zip(["condition", *by], key, strict=True))
             results.append(head | {"quantity": label} | vars(interval))
     return results

@@ -48,9 +48,9 @@ def genome_distribution(agents: pl.DataFrame, names: Sequence[str]) -> pl.DataFr
     Returns:
         By window and weight: agents, mean, sd (null for a single agent), q05, q25, median, q75, q95.
     """
-    tall = agents.select("window", *names).unpivot(index="window", variable_name="weight")
+    unpivoted = agents.select("window", *names).unpivot(index="window", variable_name="weight")
     value = pl.col("value").cast(pl.Float64)
     spread = {"agents": pl.len(), "mean": value.mean(), "sd": value.std()}
     spread |= {name: value.quantile(q, "linear") for name, q in QUANTILES.items()}
     order = pl.Enum(list(names))
-    return tall.group_by("window", pl.col("weight").cast(order)).agg(**spread).sort("window", "weight")
+    return unpivoted.group_by("window", pl.col("weight").cast(order)).agg(**spread).sort("window", "weight")

@@ -26,18 +26,18 @@ def reproduction(cohort: pl.DataFrame) -> dict[str, Any]:
         number of children. None for undefined values.
     """
     children = cohort["children"].to_numpy().astype(np.float64)
-    some, count = len(children) > 0, len(children)
-    mean = float(children.mean()) if some else None
+    has_agents, count = len(children) > 0, len(children)
+    mean = float(children.mean()) if has_agents else None
     variance = float(children.var(ddof=1)) if count > 1 else None
-    top = np.sort(children)[::-1][: max(round(count / 10), 1)].sum()
-    numbers = np.bincount(np.minimum(children.astype(np.int64), _MANY), minlength=_MANY + 1).tolist()
+    top_sum = np.sort(children)[::-1][: max(round(count / 10), 1)].sum()
+    child_counts = np.bincount(np.minimum(children.astype(np.int64), _MANY), minlength=_MANY + 1).tolist()
     return {
         "agents": count,
         "complete": complete_share(cohort),
         "mean": mean,
         "variance": variance,
         "opportunity": variance / mean**2 if variance is not None and mean else None,
-        "childless": float((children == 0).mean()) if some else None,
-        "top_tenth": float(top / children.sum()) if mean else None,
-        **{f"with_{i}{'_or_more' if i == _MANY else ''}": number for i, number in enumerate(numbers)},
+        "childless": float((children == 0).mean()) if has_agents else None,
+        "top_tenth": float(top_sum / children.sum()) if mean else None,
+        **{f"with_{i}{'_or_more' if i == _MANY else ''}": number for i, number in enumerate(child_counts)},
     }

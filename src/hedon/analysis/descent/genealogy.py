@@ -49,14 +49,14 @@ def genealogy(agents: pl.DataFrame) -> Genealogy:
         agents: Table `agents` of one world, by agent_id; columns agent_id, parent_id, birth_step, death_step.
     """
     ids = agents["agent_id"].to_numpy()
-    wanted = agents["parent_id"].fill_null(-1).to_numpy()
-    at = np.searchsorted(ids, wanted)
-    found = (wanted >= 0) & (at < len(ids))
-    found[found] = ids[at[found]] == wanted[found]
-    parent = np.where(found, at, -1).astype(np.int64)
+    parent_ids = agents["parent_id"].fill_null(-1).to_numpy()
+    position = np.searchsorted(ids, parent_ids)
+    has_parent = (parent_ids >= 0) & (position < len(ids))
+    has_parent[has_parent] = ids[position[has_parent]] == parent_ids[has_parent]
+    parent = np.where(has_parent, position, -1).astype(np.int64)
     death = agents["death_step"].cast(pl.Int64).fill_null(ALIVE).to_numpy()
     birth = agents["birth_step"].cast(pl.Int64).to_numpy()
-    return Genealogy(parent, birth, death, int(((wanted >= 0) & ~found).sum()))
+    return Genealogy(parent, birth, death, int(((parent_ids >= 0) & ~has_parent).sum()))
 
 
 def depth(tree: Genealogy) -> Ints:
@@ -73,12 +73,12 @@ def depth(tree: Genealogy) -> Ints:
 
 def founder(tree: Genealogy) -> Ints:
     """Position of each agent's first recorded ancestor, itself if it has no recorded parent, (n,)."""
-    up = np.where(tree.parent < 0, np.arange(tree.size), tree.parent)
+    ancestor = np.where(tree.parent < 0, np.arange(tree.size), tree.parent)
     while True:  # each round doubles the distance climbed
-        further = up[up]
-        if np.array_equal(further, up):
-            return up
-        up = further
+        next_ancestor = ancestor[ancestor]
+        if np.array_equal(next_ancestor, ancestor):
+            return ancestor
+        ancestor = next_ancestor
 
 
 def ancestry(tree: Genealogy, agents: Ints) -> Flags:
@@ -88,14 +88,14 @@ def ancestry(tree: Genealogy, agents: Ints) -> Flags:
         tree: The pedigree.
         agents: Positions of the agents, (m,).
     """
-    marked = np.zeros(tree.size, bool)
+    is_ancestor = np.zeros(tree.size, bool)
     current = np.unique(agents)
     while len(current):
-        marked[current] = True
-        up = tree.parent[current]
-        current = np.unique(up[up >= 0])
-        current = current[~marked[current]]
-    return marked
+        is_ancestor[current] = True
+        parents = tree.parent[current]
+        current = np.unique(parents[parents >= 0])
+        current = current[~is_ancestor[current]]
+    return is_ancestor
 
 
 def common_ancestor(tree: Genealogy, agents: Ints) -> int | None:
@@ -105,15 +105,15 @@ def common_ancestor(tree: Genealogy, agents: Ints) -> int | None:
         tree: The pedigree.
         agents: Positions of the agents, (m,).
     """
-    line = ancestry(tree, agents)
-    if not len(agents) or np.count_nonzero(line & (tree.parent < 0)) != 1:
+    is_ancestor = ancestry(tree, agents)
+    if not len(agents) or np.count_nonzero(is_ancestor & (tree.parent < 0)) != 1:
         return None
     # Every ancestor up to the common one leads to all the agents. Their lines part at the first agent, from the founder
     # down, that is one of them or has two children among their ancestors.
-    marked = np.flatnonzero(line)
-    on_the_way = np.bincount(tree.parent[marked][tree.parent[marked] >= 0], minlength=tree.size)
-    parts = marked[(on_the_way[marked] != 1) | np.isin(marked, agents)]
-    return int(parts[0])
+    ancestors = np.flatnonzero(is_ancestor)
+    child_count = np.bincount(tree.parent[ancestors][tree.parent[ancestors] >= 0], minlength=tree.size)
+    branching = ancestors[(child_count[ancestors] != 1) | np.isin(ancestors, agents)]
+    return int(branching[0])
 
 
 def living_at(tree: Genealogy, step: int) -> Ints:
@@ -139,11 +139,11 @@ def families(tree: Genealogy, steps: Ints) -> Ints:
     Returns:
         Numbers of founders, (times,).
     """
-    last = np.full(tree.size, -1, np.int64)
-    np.maximum.at(last, founder(tree), tree.death)
-    ends = np.sort(last[last >= 0])
-    begun = np.sort(tree.birth[tree.parent < 0])
-    return np.searchsorted(begun, steps, side="right") - np.searchsorted(ends, steps, side="right")
+    last_death = np.full(tree.size, -1, np.int64)
+    np.maximum.at(last_death, founder(tree), tree.death)
+    extinctions = np.sort(last_death[last_death >= 0])
+    founding_steps = np.sort(tree.birth[tree.parent < 0])
+    return np.searchsorted(founding_steps, steps, side="right") - np.searchsorted(extinctions, steps, side="right")
 
 
 def shares_of_descent(tree: Genealogy, agents: pl.DataFrame, amount: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -160,9 +160,9 @@ def shares_of_descent(tree: Genealogy, agents: pl.DataFrame, amount: NDArray[np.
     share = amount.astype(np.float64).tolist()
     pairs = list(zip(tree.parent.tolist(), _mates(agents).tolist(), strict=True))
     for i in range(tree.size - 1, -1, -1):  # children come after their parents
-        known = [each for each in pairs[i] if each >= 0]
-        for each in known:
-            share[each] += share[i] / len(known)
+        parents = [parent for parent in pairs[i] if parent >= 0]
+        for parent in parents:
+            share[parent] += share[i] / len(parents)
     return np.array(share)
 
 
@@ -170,6 +170,6 @@ def _mates(agents: pl.DataFrame) -> Ints:
     """Position of each agent's second parent, −1 if there is none, (n,)."""
     if "mate_id" not in agents.columns:
         return np.full(agents.height, -1, np.int64)
-    ids, wanted = agents["agent_id"].to_numpy(), agents["mate_id"].fill_null(-1).to_numpy()
-    at = np.minimum(np.searchsorted(ids, wanted), len(ids) - 1)
-    return np.where((wanted >= 0) & (ids[at] == wanted), at, -1).astype(np.int64)
+    ids, mate_ids = agents["agent_id"].to_numpy(), agents["mate_id"].fill_null(-1).to_numpy()
+    position = np.minimum(np.searchsorted(ids, mate_ids), len(ids) - 1)
+    return np.where((mate_ids >= 0) & (ids[position] == mate_ids), position, -1).astype(np.int64)

@@ -26,13 +26,13 @@ def generation_time(agents: pl.DataFrame, last_step: int) -> dict[str, Any]:
     ages = _parent_ages(agents)
     living = agents.filter(pl.col("death_step").is_null())
     newest = living if living.height else agents.filter(pl.col("birth_step") == pl.col("birth_step").max())
-    reached = float(newest["generation"].to_numpy().mean()) if newest.height else None
+    mean_generation = float(newest["generation"].to_numpy().mean()) if newest.height else None
     return {
         "births": int((genealogy(agents).parent >= 0).sum()),
         "parent_age": float(ages.mean()) if len(ages) else None,
         "parent_age_sd": float(ages.std(ddof=1)) if len(ages) > 1 else None,
-        "reached": reached,
-        "line_time": last_step / reached if reached else None,
+        "reached": mean_generation,
+        "line_time": last_step / mean_generation if mean_generation else None,
     }
 
 

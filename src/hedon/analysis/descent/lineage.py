@@ -59,23 +59,23 @@ def lines_through_time(
         By step and weight: step, weight, lines (number of lines that lead to survivors), alive, line_mean (mean weight
         over the lines), living_mean (mean over all alive). Means over no agents are null.
     """
-    last = survivors(tree)
-    marked = ancestry(tree, last)
-    until = np.full(tree.size, -1, np.int64)
-    until[last] = tree.death[last]
-    heirs = np.flatnonzero(marked & (tree.parent >= 0))
-    np.maximum.at(until, tree.parent[heirs], tree.birth[heirs])
-    carriers = np.flatnonzero(marked)
-    lines = _sums(tree.birth[carriers], until[carriers], None, steps)
+    living = survivors(tree)
+    is_ancestor = ancestry(tree, living)
+    line_end = np.full(tree.size, -1, np.int64)
+    line_end[living] = tree.death[living]
+    descendants = np.flatnonzero(is_ancestor & (tree.parent >= 0))
+    np.maximum.at(line_end, tree.parent[descendants], tree.birth[descendants])
+    carriers = np.flatnonzero(is_ancestor)
+    lines = _sums(tree.birth[carriers], line_end[carriers], None, steps)
     alive = _sums(tree.birth, tree.death, None, steps)
     rows = []
     for name in names:
         weight = agents[name].to_numpy().astype(np.float64)
-        on_lines = _sums(tree.birth[carriers], until[carriers], weight[carriers], steps)
-        in_all = _sums(tree.birth, tree.death, weight, steps)
+        line_sum = _sums(tree.birth[carriers], line_end[carriers], weight[carriers], steps)
+        living_sum = _sums(tree.birth, tree.death, weight, steps)
         with np.errstate(divide="ignore", invalid="ignore"):
             columns = {"step": steps, "lines": lines.astype(np.int64), "alive": alive.astype(np.int64)}
-            columns |= {"line_mean": on_lines / lines, "living_mean": in_all / alive}
+            columns |= {"line_mean": line_sum / lines, "living_mean": living_sum / alive}
         rows.append(pl.DataFrame(columns, nan_to_null=True).with_columns(weight=pl.lit(name)))
     order = ("step", "weight", "lines", "alive", "line_mean", "living_mean")
     return pl.concat(rows).select(order)

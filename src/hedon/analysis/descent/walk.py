@@ -153,7 +153,7 @@ def neutral_courses(
     place = _places(tree, nodes)
     genes = _walked(tree, nodes, law, rng, walks)
     return np.concatenate(
-        [[gene[place[at]].mean(axis=0, dtype=np.float64) for at in living] for gene in genes], axis=1
+        [[gene[place[positions]].mean(axis=0, dtype=np.float64) for positions in living] for gene in genes], axis=1
     ).T
 
 
@@ -222,8 +222,8 @@ def is_mutated(tree: Genealogy, law: MutationLaw, last_step: int) -> NDArray[np.
     if not law.late:
         return born
     end = -(-tree.birth // law.window) * law.window
-    has = ~born | ((tree.death > end) & (end <= last_step))
-    return born & has & has[tree.parent]
+    is_final = ~born | ((tree.death > end) & (end <= last_step))
+    return born & is_final & is_final[tree.parent]
 
 
 def birth_number(tree: Genealogy, window: int, late: bool) -> NDArray[np.int64]:
@@ -242,11 +242,11 @@ def birth_number(tree: Genealogy, window: int, late: bool) -> NDArray[np.int64]:
     """
     born = tree.parent >= 0
     # An agent born in step s (counted from 0) has birth s + 1; ids, and thus positions, follow the order of birth.
-    of = np.where(born, (tree.birth - 1) // window, -1)
-    index = pl.DataFrame({"window": of}).select(pl.int_range(pl.len()).over("window")).to_series().to_numpy()
-    births = np.bincount(of[born] + 1, minlength=2)  # per window, after a 0 for the one before the first
-    known = births[of + late]
+    window_index = np.where(born, (tree.birth - 1) // window, -1)
+    index = pl.DataFrame({"window": window_index}).select(pl.int_range(pl.len()).over("window")).to_series().to_numpy()
+    births = np.bincount(window_index[born] + 1, minlength=2)  # per window, after a 0 for the one before the first
+    birth_count = births[window_index + late]
     number = np.zeros(tree.size, np.int64)
-    pairs = np.stack([known, index], axis=1)[born]
+    pairs = np.stack([birth_count, index], axis=1)[born]
     number[born] = np.unique(pairs, axis=0, return_inverse=True)[1].ravel() if born.any() else 0
     return number

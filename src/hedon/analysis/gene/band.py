@@ -60,8 +60,8 @@ def drift_bands(worlds: Sequence[WorldRecord]) -> dict[str, DriftBand]:
     for name, law in laws.items():
         if law not in bands:
             walks = [course.neutral[name] for course in courses]
-            at = (np.concatenate([walk[:, i] for walk in walks if walk.shape[1] > i]) for i in range(len(step)))
-            low, high = np.array([np.quantile(values, _RANGE) for values in at], np.float64).T
+            samples = (np.concatenate([walk[:, i] for walk in walks if walk.shape[1] > i]) for i in range(len(step)))
+            low, high = np.array([np.quantile(values, _RANGE) for values in samples], np.float64).T
             bands[law] = DriftBand(step.astype(np.float64), low, high)
     return {name: bands[law] for name, law in laws.items()}
 
@@ -78,7 +78,7 @@ def drift_genes(worlds: Sequence[WorldRecord], agents: Sequence[pl.DataFrame]) -
         are missing.
     """
     trees = [walked_pedigree(world) for world in worlds]
-    drawn: dict[MutationLaw, list[Floats]] = {}
+    draws: dict[MutationLaw, list[Floats]] = {}
     for world, tree, rows in zip(worlds, trees, agents, strict=True):
         if tree is None:
             return _recorded_genes(worlds, agents)
@@ -86,8 +86,8 @@ def drift_genes(worlds: Sequence[WorldRecord], agents: Sequence[pl.DataFrame]) -
         rng = generator(world)
         for law in dict.fromkeys(_laws(world).values()):
             values = neutral_genes(tree, sample, law, rng, _WALKS) if len(sample) else np.empty((0, 0))
-            drawn.setdefault(law, []).append(values.ravel().astype(np.float64))
-    pooled = {law: np.concatenate(values) for law, values in drawn.items()}
+            draws.setdefault(law, []).append(values.ravel().astype(np.float64))
+    pooled = {law: np.concatenate(values) for law, values in draws.items()}
     return {name: pooled[law] for name, law in _laws(worlds[0]).items() if len(pooled[law])}
 
 
@@ -97,29 +97,29 @@ def _laws(world: WorldRecord) -> dict[str, MutationLaw]:
 
 def _controls(world: WorldRecord) -> dict[str, list[str]]:
     """For each gene, the recorded neutral genes with its law; a neutral gene includes itself."""
-    alike = like_neutral(world)
-    return {name: [*others, *([name] if name in world.neutral_names else [])] for name, others in alike.items()}
+    controls = like_neutral(world)
+    return {name: [*names, *([name] if name in world.neutral_names else [])] for name, names in controls.items()}
 
 
 def _recorded_bands(worlds: Sequence[WorldRecord]) -> dict[str, DriftBand]:
     stacked = pl.concat([world.population.with_columns(world=pl.lit(i, pl.Int32)) for i, world in enumerate(worlds)])
     rows = history(stacked, (), worlds[0].neutral_names)
     bands = {}
-    for name, alike in _controls(worlds[0]).items():
-        courses = rows.unpivot([f"{each}_mean" for each in alike], index=["bin", "step"]).drop_nulls("value")
+    for name, controls in _controls(worlds[0]).items():
+        courses = rows.unpivot([f"{control}_mean" for control in controls], index=["bin", "step"]).drop_nulls("value")
         low, high = (pl.col("value").quantile(bound, "linear") for bound in _RANGE)
-        found = courses.group_by("bin").agg(pl.col("step").max(), pl.len(), low=low, high=high).sort("step")
-        found = found.filter(pl.col("len") >= ENOUGH_GENES)
-        if found.height:
-            bounds = (found[column].cast(pl.Float64).to_numpy() for column in ("step", "low", "high"))
+        quantiles = courses.group_by("bin").agg(pl.col("step").max(), pl.len(), low=low, high=high).sort("step")
+        quantiles = quantiles.filter(pl.col("len") >= ENOUGH_GENES)
+        if quantiles.height:
+            bounds = (quantiles[column].cast(pl.Float64).to_numpy() for column in ("step", "low", "high"))
             bands[name] = DriftBand(*bounds)
     return bands
 
 
 def _recorded_genes(worlds: Sequence[WorldRecord], agents: Sequence[pl.DataFrame]) -> dict[str, Floats]:
     pooled = {}
-    for name, alike in _controls(worlds[0]).items():
-        if len(alike) * len(worlds) >= ENOUGH_GENES:
-            values = [rows.select(alike).to_numpy().ravel().astype(np.float64) for rows in agents]
+    for name, controls in _controls(worlds[0]).items():
+        if len(controls) * len(worlds) >= ENOUGH_GENES:
+            values = [rows.select(controls).to_numpy().ravel().astype(np.float64) for rows in agents]
             pooled[name] = np.concatenate(values)
     return {name: values for name, values in pooled.items() if len(values)}

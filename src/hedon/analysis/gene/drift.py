@@ -104,10 +104,10 @@ def standard_drift(world: WorldRecord, last: int | None = None) -> list[WorldDri
         world: A world with its agents.
         last: Agents to compare, as in `world_drift`.
     """
-    known = _KNOWN.setdefault(world, {})
-    if last not in known:
-        known[last] = world_drift(world, generator(world), last=last)
-    return known[last]
+    cached = _KNOWN.setdefault(world, {})
+    if last not in cached:
+        cached[last] = world_drift(world, generator(world), last=last)
+    return cached[last]
 
 
 def _sample(tree: Genealogy, world: WorldRecord, last: int | None) -> NDArray[np.int64]:
@@ -133,10 +133,10 @@ def drift_tests(
         alike: For each reward weight, the neutral genes with its law, from `like_neutral`.
         rng: Random number generator that breaks ties.
     """
-    known = [{result.weight: result for result in world} for world in worlds if world]
-    walked = [test for name in (*reward_names, *neutral_names) for test in _against_walks(name, known)]
-    marked = [_against_neutral(name, alike[name], known, rng) for name in reward_names if alike.get(name)]
-    return [*_corrected(walked, neutral_names), *_corrected(marked, neutral_names)]
+    drifts = [{result.weight: result for result in world} for world in worlds if world]
+    walk_tests = [test for name in (*reward_names, *neutral_names) for test in _against_walks(name, drifts)]
+    neutral_tests = [_against_neutral(name, alike[name], drifts, rng) for name in reward_names if alike.get(name)]
+    return [*_corrected(walk_tests, neutral_names), *_corrected(neutral_tests, neutral_names)]
 
 
 def _against_walks(name: str, worlds: Sequence[dict[str, WorldDrift]]) -> list[DriftTest]:
@@ -149,10 +149,10 @@ def _against_neutral(
 ) -> DriftTest:
     excess, ranks = [], []
     for world in worlds:
-        own, others = _displacement(world[name]), np.array([_displacement(world[each]) for each in neutral])
-        excess.append(own - float(others.mean()))
-        tied = np.count_nonzero(others == own)
-        ranks.append(1 + np.count_nonzero(others < own) + int(rng.integers(0, tied + 1)))
+        displacement, controls = _displacement(world[name]), np.array([_displacement(world[gene]) for gene in neutral])
+        excess.append(displacement - float(controls.mean()))
+        ties = np.count_nonzero(controls == displacement)
+        ranks.append(1 + np.count_nonzero(controls < displacement) + int(rng.integers(0, ties + 1)))
     p = rank_sum_p(ranks, [len(neutral) + 1] * len(ranks)) if ranks else NAN
     return DriftTest("marker", len(excess), *mean_bounds(excess), p, weight=name)
 

@@ -56,23 +56,23 @@ def births_of(world: WorldRecord) -> Births:
     """Children of one world with recorded parents, born in the first `KNOWN` of the run."""
     agents = world.agents
     tree = genealogy(agents)
-    lived, _ = durations(agents, world.last_step)
+    duration, _ = durations(agents, world.last_step)
     law = mutation_law(world.config, world.gene(world.weight_names[0]))  # all genes mutate at the same births
     mutated = is_mutated(tree, law, world.last_step)
     child = np.flatnonzero(mutated & (tree.birth <= KNOWN * world.last_step))
     genome = agents.select(world.weight_names).to_numpy().astype(np.float64)
-    gained = agents["energy_gained"].to_numpy().astype(np.float64)
-    outcome = np.stack([gained / np.maximum(lived, YOUNG), lived, agents["children"].to_numpy()], axis=1)
+    energy_gained = agents["energy_gained"].to_numpy().astype(np.float64)
+    outcome = np.stack([energy_gained / np.maximum(duration, YOUNG), duration, agents["children"].to_numpy()], axis=1)
     return Births(genome[child] - genome[tree.parent[child]], outcome[child], tree.parent[child])
 
 
 def pool(births: Sequence[Births]) -> Births:
     """Combines the births of several worlds, keeping their parents distinct."""
-    begin = np.cumsum([0, *(int(each.parent.max(initial=-1)) + 1 for each in births)])
+    offsets = np.cumsum([0, *(int(world_births.parent.max(initial=-1)) + 1 for world_births in births)])
     return Births(
-        np.concatenate([each.change for each in births]),
-        np.concatenate([each.outcome for each in births]),
-        np.concatenate([each.parent + first for each, first in zip(births, begin, strict=False)]),
+        np.concatenate([world_births.change for world_births in births]),
+        np.concatenate([world_births.outcome for world_births in births]),
+        np.concatenate([world_births.parent + offset for world_births, offset in zip(births, offsets, strict=False)]),
     )
 
 
@@ -88,24 +88,24 @@ def mutation_effects(
         parents; p, two-sided, from the bootstrap's standard error. No rows if too few parents have several children.
     """
     _, parent, count = np.unique(births.parent, return_inverse=True, return_counts=True)
-    several = count[parent] > 1
-    _, parent = np.unique(parent[several], return_inverse=True)
-    if not several.any() or parent.max() + 1 < FEWEST:
+    has_siblings = count[parent] > 1
+    _, parent = np.unique(parent[has_siblings], return_inverse=True)
+    if not has_siblings.any() or parent.max() + 1 < FEWEST:
         return []
-    mean = births.outcome[several].mean(axis=0)
-    y = _among_siblings(births.outcome[several] / np.where(mean > 0, mean, 1.0), parent)
-    found = []
+    mean = births.outcome[has_siblings].mean(axis=0)
+    y = _among_siblings(births.outcome[has_siblings] / np.where(mean > 0, mean, 1.0), parent)
+    rows = []
     for scale in SCALES:
-        x = _among_siblings(_scaled(births.change[several], scale), parent)
+        x = _among_siblings(_scaled(births.change[has_siblings], scale), parent)
         columns = [*(x[:, g] * y[:, k] for g in range(x.shape[1]) for k in range(y.shape[1])), *(x**2).T]
         features = np.stack([np.bincount(parent, column) for column in columns], axis=1)
         unit = np.maximum(features.std(axis=0), 1e-300)  # sums are in single precision
-        drawn = resampled_sums(features / unit, np.arange(len(features)), rng, replicates)
-        sums = np.concatenate([(features / unit).sum(axis=0, keepdims=True), drawn]) * unit
+        resampled = resampled_sums(features / unit, np.arange(len(features)), rng, replicates)
+        sums = np.concatenate([(features / unit).sum(axis=0, keepdims=True), resampled]) * unit
         genes, outcomes = x.shape[1], y.shape[1]
-        above = sums[:, : genes * outcomes].reshape(-1, genes, outcomes)
-        below = sums[:, genes * outcomes :, None]
-        slopes = np.divide(above, below, out=np.full_like(above, np.nan), where=below > 0)
+        numerators = sums[:, : genes * outcomes].reshape(-1, genes, outcomes)
+        denominators = sums[:, genes * outcomes :, None]
+        slopes = np.divide(numerators, denominators, out=np.full_like(numerators, np.nan), where=denominators > 0)
         low, high = percentile_interval(slopes[1:])
         error = slopes[1:].std(axis=0)
         for k, outcome in enumerate(OUTCOMES):
@@ -114,8 +114,8 @@ def mutation_effects(
                 z = abs(effect) / error[g, k] if error[g, k] > 0 else np.nan
                 row = {"outcome": outcome, "weight": name, "scale": scale, "births": len(x), "parents": len(features)}
                 row |= {"effect": effect, "low": float(low[g, k]), "high": float(high[g, k])}
-                found.append(row | {"p": float(2.0 * normal_above(z))})
-    return found
+                rows.append(row | {"p": float(2.0 * normal_above(z))})
+    return rows
 
 
 def _scaled(change: Floats, scale: str) -> Floats:

@@ -31,9 +31,9 @@ def like_neutral(world: WorldRecord) -> Mapping[str, list[str]]:
     genes = {name: world.gene(name) for name in world.weight_names}
     return {
         name: [
-            each
-            for each in world.neutral_names
-            if each != name and (genes[each].law, genes[each].mutation) == (gene.law, gene.mutation)
+            neutral
+            for neutral in world.neutral_names
+            if neutral != name and (genes[neutral].law, genes[neutral].mutation) == (gene.law, gene.mutation)
         ]
         for name, gene in genes.items()
     }

@@ -79,8 +79,8 @@ class _Traits:
 
     def __init__(self, cohort: pl.DataFrame, names: Sequence[str], last_step: int) -> None:
         self._cohort = cohort.sort("birth_step", "agent_id")
-        lived, _ = durations(self._cohort, last_step)
-        self._fitness = {"children": self._cohort["children"].to_numpy().astype(np.float64), "lifespan": lived}
+        duration, _ = durations(self._cohort, last_step)
+        self._fitness = {"children": self._cohort["children"].to_numpy().astype(np.float64), "lifespan": duration}
         self.count = cohort.height
         self.complete = complete_share(cohort)
         self.z = within_strata(self._cohort.select(names).to_numpy().astype(np.float64))

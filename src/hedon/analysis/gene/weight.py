@@ -42,8 +42,8 @@ def last_living(agents: pl.DataFrame, population: pl.DataFrame) -> pl.DataFrame:
     """
     require_one_species(agents)
     end = last_lived_step(population)
-    died_later = pl.col("death_step").is_null() | (pl.col("death_step") > end)
-    return agents.filter((pl.col("birth_step") <= end) & died_later)
+    is_living = pl.col("death_step").is_null() | (pl.col("death_step") > end)
+    return agents.filter((pl.col("birth_step") <= end) & is_living)
 
 
 def weight_spreads(agents: pl.DataFrame, names: Sequence[str]) -> dict[str, Spread]:
@@ -92,6 +92,6 @@ def last_mean(weight: str, world: WorldRecord) -> float | None:
 
 
 def _spread(values: pl.Series) -> Spread:
-    known = values.drop_nulls().cast(pl.Float64).to_numpy()
-    sd = float(known.std(ddof=1)) if len(known) > 1 else None
-    return {"mean": float(known.mean()) if len(known) else None, "sd": sd}
+    recorded = values.drop_nulls().cast(pl.Float64).to_numpy()
+    sd = float(recorded.std(ddof=1)) if len(recorded) > 1 else None
+    return {"mean": float(recorded.mean()) if len(recorded) else None, "sd": sd}

@@ -51,9 +51,9 @@ def incomplete_note(rows: pl.DataFrame) -> str:
     """A sentence on the number of worlds without a complete cohort, for a note; empty if all have one."""
     if rows.is_empty():
         return ""
-    whole = rows.group_by("condition", "seed").agg(pl.col("complete").max())["complete"] >= COMPLETE
-    missing = len(whole) - int(whole.sum())
-    return f" {count(missing, 'world')} of {len(whole)} had no such cohort and are left out." if missing else ""
+    is_complete = rows.group_by("condition", "seed").agg(pl.col("complete").max())["complete"] >= COMPLETE
+    missing = len(is_complete) - int(is_complete.sum())
+    return f" {count(missing, 'world')} of {len(is_complete)} had no such cohort and are left out." if missing else ""
 
 
 def world_means(rows: pl.DataFrame, by: Sequence[str], quantities: Sequence[str]) -> pl.DataFrame:

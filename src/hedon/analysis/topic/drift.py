@@ -22,11 +22,11 @@ def drift(conditions: Conditions) -> list[ResultTable]:
     """Each weight against drift."""
     world_rows, rows = [], []
     for condition, worlds in conditions.items():
-        found = [standard_drift(world) for world in worlds]
-        for world, results in zip(worlds, found, strict=True):
+        drifts = [standard_drift(world) for world in worlds]
+        for world, results in zip(worlds, drifts, strict=True):
             world_rows += [labels(world) | asdict(result) for result in results]
         names = worlds[0].reward_names, worlds[0].neutral_names
-        tests = drift_tests(found, *names, like_neutral(worlds[0]), np.random.default_rng(SEED))
+        tests = drift_tests(drifts, *names, like_neutral(worlds[0]), np.random.default_rng(SEED))
         rows += [{"condition": condition, "weight": test.weight} | asdict(test) for test in tests]
     note = (
         "direction: mean score against neutral genes walked down the recorded pedigree, in standard deviations of "
@@ -46,14 +46,18 @@ def reversion_topic(conditions: Conditions) -> list[ResultTable]:
     """Mean reversion of each weight, over the worlds of a condition and in each of them."""
     rows, world_rows = [], []
     for condition, worlds in conditions.items():
-        known = zip(worlds, standard_courses(worlds), strict=True)
-        courses = {world: course for world, course in known if course is not None}
-        each = {world: _rows([course], world.weight_names) for world, course in courses.items()}
-        world_rows += [labels(world) | row for world, own in each.items() for row in own]
-        found = next(iter(each.values())) if len(each) == 1 else _rows([*courses.values()], worlds[0].weight_names)
+        pairs = zip(worlds, standard_courses(worlds), strict=True)
+        courses = {world: course for world, course in pairs if course is not None}
+        estimates_by_world = {world: _rows([course], world.weight_names) for world, course in courses.items()}
+        world_rows += [labels(world) | row for world, estimates in estimates_by_world.items() for row in estimates]
+        pooled = (
+            next(iter(estimates_by_world.values()))
+            if len(estimates_by_world) == 1
+            else _rows([*courses.values()], worlds[0].weight_names)
+        )
         neutral = worlds[0].neutral_names
-        corrected = holm([float("nan") if row["weight"] in neutral else row["p"] for row in found])
-        rows += [{"condition": condition} | row | {"p_holm": p} for row, p in zip(found, corrected, strict=True)]
+        corrected = holm([float("nan") if row["weight"] in neutral else row["p"] for row in pooled])
+        rows += [{"condition": condition} | row | {"p_holm": p} for row, p in zip(pooled, corrected, strict=True)]
     note = (
         "An Ornstein-Uhlenbeck process with one optimum and one strength for all worlds, fitted to the mean weight of "
         "the living at equal intervals. strength: share of the distance to the optimum that is gone after a "
@@ -73,8 +77,8 @@ def mode(conditions: Conditions) -> list[ResultTable]:
     for condition, worlds in conditions.items():
         for name in worlds[0].weight_names:
             means = [end_mean(name, world) for world in worlds if world.extinct_step is None]
-            found = modes(np.array([mean for mean in means if mean is not None], np.float64))
-            rows.append({"condition": condition, "weight": name} | asdict(found))
+            result = modes(np.array([mean for mean in means if mean is not None], np.float64))
+            rows.append({"condition": condition, "weight": name} | asdict(result))
     note = (
         "Dip test over worlds that live. power: chance to find two modes six standard deviations apart with as many "
         f"worlds, 0.8 with {FOR_VERDICT}. That no second mode is found does not show that there is one."
@@ -86,23 +90,23 @@ def _rows(courses: Sequence[WorldCourse], weights: Sequence[str]) -> list[dict[s
     """One row per weight, with strengths per generation."""
     rows = []
     for weight in weights:
-        used = [course for course in courses if is_usable(course.mean[weight])]
-        generations = sum(course.generations for course in used)
-        found = reversion([c.mean[weight] for c in used], [c.neutral[weight] for c in used])
-        if found is not None and generations > 0:
-            rows.append({"weight": weight} | _per_generation(found, generations))
+        usable = [course for course in courses if is_usable(course.mean[weight])]
+        generations = sum(course.generations for course in usable)
+        estimate = reversion([c.mean[weight] for c in usable], [c.neutral[weight] for c in usable])
+        if estimate is not None and generations > 0:
+            rows.append({"weight": weight} | _per_generation(estimate, generations))
     return rows
 
 
-def _per_generation(found: Reversion, generations: float) -> dict[str, Any]:
-    factor = found.intervals / generations
-    strengths = {name: getattr(found, name) * factor for name in ("strength", "strength_low", "strength_high")}
+def _per_generation(estimate: Reversion, generations: float) -> dict[str, Any]:
+    factor = estimate.intervals / generations
+    strengths = {name: getattr(estimate, name) * factor for name in ("strength", "strength_low", "strength_high")}
     return {
-        "worlds": found.worlds,
-        "generations": generations / found.worlds,
-        "optimum": found.optimum,
-        "optimum_low": found.optimum_low,
-        "optimum_high": found.optimum_high,
+        "worlds": estimate.worlds,
+        "generations": generations / estimate.worlds,
+        "optimum": estimate.optimum,
+        "optimum_low": estimate.optimum_low,
+        "optimum_high": estimate.optimum_high,
         **strengths,
-        "p": found.p,
+        "p": estimate.p,
     }

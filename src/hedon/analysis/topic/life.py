@@ -124,9 +124,9 @@ def energy(conditions: Conditions) -> list[ResultTable]:
     for worlds in conditions.values():
         for world in worlds:
             for part, population in (("whole run", world.population), ("last tenth", run_tail(world.population))):
-                found = energy_budget(population)
-                if found is not None:
-                    rows.append(labels(world) | {"part": part} | found)
+                budget = energy_budget(population)
+                if budget is not None:
+                    rows.append(labels(world) | {"part": part} | budget)
     worlds_table = make_table("energy_world", "Energy budgets, world by world", rows, shown=False)
     names = ["eaten", "basic", "action", "forgiven", "capped", "lost", "shared"]
     names += [name for name in ("hunted", "damage") if name in worlds_table.rows.columns]
@@ -139,11 +139,11 @@ def energy(conditions: Conditions) -> list[ResultTable]:
         "eaten, but destroyed because the agent was full. Lost: held by those who died. Shared: given by parents to "
         "their children, so that it stays in the world."
     )
-    further = {
+    explanations = {
         "hunted": " Hunted: gained by eating agents, whose own energy is among what their species lost.",
         "damage": " Damage: charged for touching obstacles.",
     }
-    note += "".join(said for name, said in further.items() if name in quantities)
+    note += "".join(sentence for name, sentence in explanations.items() if name in quantities)
     title = "Energy budget per 1000 steps lived by an agent, means over worlds"
     return [make_table("energy", title, summary, note), worlds_table]
 
@@ -159,8 +159,8 @@ def _median_rows(
     head = {"condition": condition}
     if all(median is not None for median in medians):
         return [head | {"quantity": "median"} | vars(mean_interval(medians, within=AMOUNT))]
-    lived, died = (np.concatenate(part) for part in zip(*lives, strict=True))
-    pooled = survival_curve(lived, died).quantile()[0]
+    duration, died = (np.concatenate(arrays) for arrays in zip(*lives, strict=True))
+    pooled = survival_curve(duration, died).quantile()[0]
     if pooled is None:
         return []
     return [head | {"quantity": "median of all worlds together"} | vars(Interval(pooled, None, None, len(curves)))]
@@ -201,7 +201,7 @@ def _points(curve: SurvivalCurve) -> list[dict]:
     if not len(curve.age):
         return []
     ages = np.linspace(0.0, curve.age[-1], _AGES)
-    at = np.searchsorted(curve.age, ages, side="right") - 1
+    indices = np.searchsorted(curve.age, ages, side="right") - 1
     return [
         {
             "age": float(age),
@@ -209,5 +209,5 @@ def _points(curve: SurvivalCurve) -> list[dict]:
             "low": float(curve.low[i]) if i >= 0 else 1.0,
             "high": float(curve.high[i]) if i >= 0 else 1.0,
         }
-        for age, i in zip(ages, at, strict=True)
+        for age, i in zip(ages, indices, strict=True)
     ]

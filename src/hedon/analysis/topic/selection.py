@@ -20,24 +20,26 @@ from hedon.statistic.price import price
 
 def genome(conditions: Conditions) -> list[ResultTable]:
     """Distributions of the weights over birth cohorts."""
-    parts = []
+    tables = []
     for worlds in conditions.values():
         windows = window_count(worlds)
         for world in worlds:
             cohorts = with_cohorts(world.born, world.last_step, windows)
-            found = genome_distribution(cohorts, world.weight_names).with_columns(pl.col("weight").cast(pl.String))
-            named = found.select(*(pl.lit(v).alias(k) for k, v in labels(world).items()), pl.all())
-            parts.append(named.with_columns(to_step=_ends(world.last_step, windows, named["window"])))
+            distribution = genome_distribution(cohorts, world.weight_names).with_columns(
+                pl.col("weight").cast(pl.String)
+            )
+            labeled = distribution.select(*(pl.lit(v).alias(k) for k, v in labels(world).items()), pl.all())
+            tables.append(labeled.with_columns(to_step=_ends(world.last_step, windows, labeled["window"])))
     worlds_table = ResultTable(
         "genome_world",
         "Weights by world and birth cohort",
-        pl.concat(parts) if parts else pl.DataFrame(),
+        pl.concat(tables) if tables else pl.DataFrame(),
         shown=False,
     )
-    last = worlds_table.rows
-    if not last.is_empty():
-        last = last.filter(pl.col("window") == pl.col("window").max().over("condition", "seed"))
-    summary = over_worlds(last, ("weight",), {"mean": "mean", "sd": "sd within a world"})
+    last_cohort = worlds_table.rows
+    if not last_cohort.is_empty():
+        last_cohort = last_cohort.filter(pl.col("window") == pl.col("window").max().over("condition", "seed"))
+    summary = over_worlds(last_cohort, ("weight",), {"mean": "mean", "sd": "sd within a world"})
     return [make_table("genome", "Weights in the last birth cohort, means over worlds", summary), worlds_table]
 
 
@@ -53,11 +55,11 @@ def selection_topic(conditions: Conditions) -> list[ResultTable]:
         rows,
         shown=False,
     )
-    whole = complete_cohorts(worlds_table.rows)
+    complete = complete_cohorts(worlds_table.rows)
     quantities = {"standard_gradient": "standardized gradient", "intensity": "standardized differential"}
-    by_world = world_means(whole, ("fitness", "weight"), tuple(quantities))
+    by_world = world_means(complete, ("fitness", "weight"), tuple(quantities))
     by_window = over_worlds(
-        whole, ("fitness", "weight", "window", "to_step"), {"standard_gradient": "standardized gradient"}
+        complete, ("fitness", "weight", "window", "to_step"), {"standard_gradient": "standardized gradient"}
     )
     note = (
         "Change of relative fitness per standard deviation of the weight: the gradient with the other weights held "
@@ -106,13 +108,13 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
         for world in worlds:
             tree = genealogy(world.agents)
             cohorts = with_cohorts(world.agents, world.last_step, windows)["window"].to_numpy()
-            told = world.agents["agent_id"].is_in(world.born["agent_id"].implode()).to_numpy()
+            is_born_in_run = world.agents["agent_id"].is_in(world.born["agent_id"].implode()).to_numpy()
             weights = {name: world.agents[name].to_numpy().astype(np.float64) for name in world.weight_names}
             for window in range(windows):
                 rows += [
                     labels(world)
                     | {"window": window, "weight": name}
-                    | price(z, tree.parent, told & (cohorts == window))
+                    | price(z, tree.parent, is_born_in_run & (cohorts == window))
                     for name, z in weights.items()
                 ]
     worlds_table = make_table("price_world", "Price's equation by world and cohort of parents", rows, shown=False)
@@ -129,12 +131,12 @@ def price_topic(conditions: Conditions) -> list[ResultTable]:
 def _with_excess(by_world: pl.DataFrame, conditions: Conditions) -> pl.DataFrame:
     """Adds the excess of a weight's curvature over the mean of its world's neutral genes, other than itself."""
     neutral = {name for worlds in conditions.values() for world in worlds for name in world.neutral_names}
-    of_marker = pl.col("curvature").filter(pl.col("weight").is_in(sorted(neutral)))
+    neutral_curvature = pl.col("curvature").filter(pl.col("weight").is_in(sorted(neutral)))
     group = ("condition", "seed", "fitness")
-    own = pl.when(pl.col("weight").is_in(sorted(neutral))).then(pl.col("curvature")).otherwise(0.0)
-    others = of_marker.count().over(group) - pl.col("weight").is_in(sorted(neutral)).cast(pl.Int64)
-    mean = (of_marker.sum().over(group) - own) / others
-    return by_world.with_columns(excess=pl.when(others > 0).then(pl.col("curvature") - mean))
+    own_curvature = pl.when(pl.col("weight").is_in(sorted(neutral))).then(pl.col("curvature")).otherwise(0.0)
+    other_count = neutral_curvature.count().over(group) - pl.col("weight").is_in(sorted(neutral)).cast(pl.Int64)
+    mean = (neutral_curvature.sum().over(group) - own_curvature) / other_count
+    return by_world.with_columns(excess=pl.when(other_count > 0).then(pl.col("curvature") - mean))
 
 
 def _ends(last_step: int, windows: int, window: pl.Series) -> pl.Series:

@@ -11,22 +11,22 @@ from hedon.analysis.world.record import SEED, Conditions
 
 def mutation_topic(conditions: Conditions) -> list[ResultTable]:
     """Effects of a child's own mutation on its life, among siblings."""
-    rows, shown = [], []
+    rows, summary = [], []
     for condition, worlds in conditions.items():
         rng = np.random.default_rng([SEED, len(worlds)])
         effects = mutation_effects(pool([births_of(world) for world in worlds]), worlds[0].weight_names, rng)
         rows += [{"condition": condition} | effect for effect in effects]
         for outcome, scale in itertools.product(OUTCOMES, SCALES):
-            mine = [effect for effect in effects if (effect["outcome"], effect["scale"]) == (outcome, scale)]
-            neutral = [effect for effect in mine if effect["weight"].startswith("neutral_")]
-            shown += [{"condition": condition} | effect for effect in mine if effect not in neutral]
+            matching = [effect for effect in effects if (effect["outcome"], effect["scale"]) == (outcome, scale)]
+            neutral = [effect for effect in matching if effect["weight"].startswith("neutral_")]
+            summary += [{"condition": condition} | effect for effect in matching if effect not in neutral]
             if neutral:
-                found = sum(effect["p"] < 0.05 for effect in neutral)
-                shown.append(
+                significant = sum(effect["p"] < 0.05 for effect in neutral)
+                summary.append(
                     {
                         "condition": condition,
                         "outcome": outcome,
-                        "weight": f"{len(neutral)} neutral: {found} with p < 0.05",
+                        "weight": f"{len(neutral)} neutral: {significant} with p < 0.05",
                         "scale": scale,
                     }
                 )
@@ -37,6 +37,6 @@ def mutation_topic(conditions: Conditions) -> list[ResultTable]:
         "parents."
     )
     return [
-        make_table("mutation", "What mutations do to the lives of children", shown, note),
+        make_table("mutation", "What mutations do to the lives of children", summary, note),
         make_table("mutation_gene", "What mutations of each gene do, neutral genes too", rows, shown=False),
     ]

@@ -25,10 +25,10 @@ def genealogy_topic(conditions: Conditions) -> list[ResultTable]:
             times = np.linspace(0, world.last_step, _TIMES + 1).round().astype(np.int64)
             rows += [labels(world) | coalescence(tree, int(step)) for step in times]
             steps = np.linspace(0, world.last_step, _LINE_TIMES + 1).round().astype(np.int64)
-            found = lines_through_time(tree, world.agents, world.weight_names, steps)
-            lines.append(found.select(*(pl.lit(v).alias(k) for k, v in labels(world).items()), pl.all()))
+            line_table = lines_through_time(tree, world.agents, world.weight_names, steps)
+            lines.append(line_table.select(*(pl.lit(v).alias(k) for k, v in labels(world).items()), pl.all()))
     over_time = make_table("genealogy_time", "Common descent over time, by world", rows, shown=False)
-    last = (
+    last_rows = (
         over_time.rows.filter(pl.col("step") == pl.col("step").max().over("condition", "seed"))
         if rows
         else over_time.rows
@@ -38,7 +38,7 @@ def genealogy_topic(conditions: Conditions) -> list[ResultTable]:
         "largest": "share of the largest family",
         "depth": "time to the common ancestor [step]",
     }
-    summary = over_worlds(last, (), quantities, {"families": AMOUNT, "largest": SHARE, "depth": AMOUNT})
+    summary = over_worlds(last_rows, (), quantities, {"families": AMOUNT, "largest": SHARE, "depth": AMOUNT})
     note = (
         "Of those alive at the end. The time to the common ancestor is known only in worlds in which a single family "
         "is left; elsewhere it is longer than the run."
@@ -58,10 +58,10 @@ def genealogy_topic(conditions: Conditions) -> list[ResultTable]:
 def regime(conditions: Conditions) -> list[ResultTable]:
     """Regimes over time."""
     rows = [
-        labels(world) | found
+        labels(world) | row
         for worlds in conditions.values()
         for world in worlds
-        for found in regimes(world.population, world.config, species=world.species)
+        for row in regimes(world.population, world.config, species=world.species)
     ]
     over_time = make_table("regime_time", "Regimes over time, by world", rows, shown=False)
     shares = over_time.rows

@@ -22,11 +22,11 @@ def energy_budget(population: pl.DataFrame) -> dict[str, float] | None:
         ArgumentError: The rows are of several species.
     """
     require_one_species(population)
-    lived = int(population["agent_steps"].sum())
-    there = [name for name in _FLOWS if f"energy_{name}" in population.columns]
-    sums = {name: float(population[f"energy_{name}"].sum()) for name in there}
-    charged = sums["basic"] + sums["action"] + sums.get("damage", 0.0)
-    if not lived or not charged:
+    agent_steps = int(population["agent_steps"].sum())
+    recorded_flows = [name for name in _FLOWS if f"energy_{name}" in population.columns]
+    sums = {name: float(population[f"energy_{name}"].sum()) for name in recorded_flows}
+    charges = sums["basic"] + sums["action"] + sums.get("damage", 0.0)
+    if not agent_steps or not charges:
         return None
-    flows = {name: 1000.0 * value / lived for name, value in sums.items()}
-    return flows | {"forgiven_share": sums["forgiven"] / charged}
+    flows = {name: 1000.0 * value / agent_steps for name, value in sums.items()}
+    return flows | {"forgiven_share": sums["forgiven"] / charges}

@@ -32,10 +32,12 @@ def species_loss(worlds: Sequence[WorldRecord], until: float) -> ExtinctShare:
         The Kaplan–Meier share with its interval.
     """
     steps = [(world.extinct_step, world.apart_step) for world in worlds]
-    return _share(worlds, [min((step for step in both if step is not None), default=None) for both in steps], until)
+    return _share(
+        worlds, [min((step for step in step_pair if step is not None), default=None) for step_pair in steps], until
+    )
 
 
 def _share(worlds: Sequence[WorldRecord], ends: Sequence[int | None], until: float) -> ExtinctShare:
     died = np.array([end is not None for end in ends], np.bool_)
-    lasted = [world.last_step if end is None else end for world, end in zip(worlds, ends, strict=True)]
-    return extinct_share(np.array(lasted, np.float64), died, until)
+    duration = [world.last_step if end is None else end for world, end in zip(worlds, ends, strict=True)]
+    return extinct_share(np.array(duration, np.float64), died, until)

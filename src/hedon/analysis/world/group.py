@@ -65,22 +65,24 @@ def company(world: WorldRecord, frames: pl.LazyFrame, hunters: Sequence[str]) ->
         agents and actual positions of the hunters.
     """
     steps = frames.select(pl.col("step").unique().sort()).collect()["step"].to_numpy()
-    shown = steps[np.unique(np.linspace(0, len(steps) - 1, min(len(steps), MOST)).astype(int))] if len(steps) else steps
+    sampled_steps = (
+        steps[np.unique(np.linspace(0, len(steps) - 1, min(len(steps), MOST)).astype(int))] if len(steps) else steps
+    )
     names = [world.species, *hunters]
-    table = frames.filter(pl.col("step").is_in(shown.tolist()) & pl.col("kind").is_in(names))
-    draw, arena = generator(world), world.config.arena
+    table = frames.filter(pl.col("step").is_in(sampled_steps.tolist()) & pl.col("kind").is_in(names))
+    rng, arena = generator(world), world.config.arena
     rows = []
     for moment in table.collect().sort("step", "kind", "id").partition_by("step"):
-        mine = moment.filter(pl.col("kind") == world.species).select("x", "y").to_numpy().astype(np.float64)
-        others = moment.filter(pl.col("kind") != world.species).select("x", "y").to_numpy().astype(np.float64)
-        if not len(mine):
+        positions = moment.filter(pl.col("kind") == world.species).select("x", "y").to_numpy().astype(np.float64)
+        hunter_positions = moment.filter(pl.col("kind") != world.species).select("x", "y").to_numpy().astype(np.float64)
+        if not len(positions):
             continue
-        chance = draw.uniform((0, 0), (arena.width, arena.height), (len(mine), 2))
-        row = {"step": moment["step"][0], "alive": len(mine)}
-        row |= {"group": group_sizes(mine).mean(), "group_chance": group_sizes(chance).mean()}
-        known = len(others) > 0
-        row["distance"] = nearest(mine, others).mean() if known else None
-        row["distance_chance"] = nearest(chance, others).mean() if known else None
+        random_positions = rng.uniform((0, 0), (arena.width, arena.height), (len(positions), 2))
+        row = {"step": moment["step"][0], "alive": len(positions)}
+        row |= {"group": group_sizes(positions).mean(), "group_chance": group_sizes(random_positions).mean()}
+        has_hunters = len(hunter_positions) > 0
+        row["distance"] = nearest(positions, hunter_positions).mean() if has_hunters else None
+        row["distance_chance"] = nearest(random_positions, hunter_positions).mean() if has_hunters else None
         rows.append(row)
     floats = ("group", "group_chance", "distance", "distance_chance")
     schema = {"step": pl.Int64, "alive": pl.Int64} | dict.fromkeys(floats, pl.Float64)

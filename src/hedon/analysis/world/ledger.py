@@ -62,8 +62,8 @@ def interval_residuals(population: pl.DataFrame, agents: pl.DataFrame | None) ->
     initial = None if agents is None else _initial(population, agents)
     total = population["energy_total"].to_numpy()
     flow = sum(_SIGNS[name.removeprefix("energy_")] * population[name].to_numpy() for name in flow_names(population))
-    before = np.concatenate([[np.nan if initial is None else initial], total[:-1]])[: len(total)]
-    return np.abs(total - before - flow)
+    previous_total = np.concatenate([[np.nan if initial is None else initial], total[:-1]])[: len(total)]
+    return np.abs(total - previous_total - flow)
 
 
 def flow_names(population: pl.DataFrame) -> list[str]:
@@ -74,7 +74,7 @@ def flow_names(population: pl.DataFrame) -> list[str]:
 def _initial(population: pl.DataFrame, agents: pl.DataFrame) -> float | None:
     """Energy of the founders at birth, 0 if no agent ever lived; None if their rows are missing."""
     founders = agents.filter(pl.col("parent_id").is_null())
-    begins = population.height == 0 or population["step"][0] == population["steps"][0]
-    nobody = population.height > 0 and not population["agent_steps"].sum()
-    known = begins and (founders.height > 0 or nobody)
-    return float(founders["birth_energy"].cast(pl.Float64).sum()) if known else None
+    is_from_start = population.height == 0 or population["step"][0] == population["steps"][0]
+    never_lived = population.height > 0 and not population["agent_steps"].sum()
+    is_known = is_from_start and (founders.height > 0 or never_lived)
+    return float(founders["birth_energy"].cast(pl.Float64).sum()) if is_known else None

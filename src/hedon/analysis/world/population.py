@@ -48,10 +48,10 @@ def history(
     rows = groups.agg(pl.col("step").max(), pl.col(means).mean(), pl.col(sums).cast(pl.Int64).sum())
     rows = rows.sort("world", "bin")
     is_part = pl.col("steps") < whole_window(population)
-    before = pl.col(sums).shift(1, fill_value=0).over("world")
-    rows = rows.with_columns(pl.when(is_part).then(pl.col(sums) + before).otherwise(pl.col(sums)))
-    lived = pl.when(pl.col("agent_steps") > 0).then(pl.col("agent_steps"))
-    rates = (pl.col(_COUNTS) * 1000.0 / pl.col("steps"), pl.col(eaten) * 1000.0 / lived)
+    previous = pl.col(sums).shift(1, fill_value=0).over("world")
+    rows = rows.with_columns(pl.when(is_part).then(pl.col(sums) + previous).otherwise(pl.col(sums)))
+    agent_steps = pl.when(pl.col("agent_steps") > 0).then(pl.col("agent_steps"))
+    rates = (pl.col(_COUNTS) * 1000.0 / pl.col("steps"), pl.col(eaten) * 1000.0 / agent_steps)
     return rows.select("world", "bin", "step", *means, *rates)
 
 
@@ -103,8 +103,8 @@ def mean_energy(population: pl.DataFrame) -> float | None:
 def last_generation(population: pl.DataFrame) -> float | None:
     """Mean generation of the agents alive at the end, or when any was last alive; None if that is not recorded."""
     require_one_species(population)
-    known = population["generation_mean"].drop_nulls()
-    return float(known[-1]) if len(known) else None
+    recorded = population["generation_mean"].drop_nulls()
+    return float(recorded[-1]) if len(recorded) else None
 
 
 def extinct_step(population: pl.DataFrame) -> int | None:
@@ -115,8 +115,8 @@ def extinct_step(population: pl.DataFrame) -> int | None:
     require_one_species(population)
     if population.is_empty() or population["alive"][-1]:
         return None
-    lived = population.filter(pl.col("agent_steps") > 0)
-    return int(population["step"][0] - population["steps"][0]) if lived.is_empty() else int(lived["step"][-1])
+    inhabited = population.filter(pl.col("agent_steps") > 0)
+    return int(population["step"][0] - population["steps"][0]) if inhabited.is_empty() else int(inhabited["step"][-1])
 
 
 def death_rates(population: pl.DataFrame, points: int = 100) -> pl.DataFrame:
@@ -133,15 +133,15 @@ def death_rates(population: pl.DataFrame, points: int = 100) -> pl.DataFrame:
     require_one_species(population)
     if "deaths_eaten" not in population.columns:  # no agents are eaten there
         population = population.with_columns(deaths_eaten=pl.lit(0, pl.Int32))
-    counted = ("deaths", "deaths_starved", "deaths_eaten", "agent_steps")
+    count_columns = ("deaths", "deaths_starved", "deaths_eaten", "agent_steps")
     rows = population.group_by("world", _bin(population, points)).agg(
-        pl.col("step").max(), pl.col(counted).cast(pl.Int64).sum()
+        pl.col("step").max(), pl.col(count_columns).cast(pl.Int64).sum()
     )
-    per = 10_000.0 / pl.when(pl.col("agent_steps") > 0).then(pl.col("agent_steps"))
+    scale = 10_000.0 / pl.when(pl.col("agent_steps") > 0).then(pl.col("agent_steps"))
     starved, eaten = pl.col("deaths_starved"), pl.col("deaths_eaten")
     rates = {"age_energy": pl.col("deaths") - starved - eaten, "starved": starved, "eaten": eaten}
-    found = rows.sort("world", "bin").with_columns((count * per).alias(name) for name, count in rates.items())
-    return found.select("world", "bin", "step", *rates)
+    table = rows.sort("world", "bin").with_columns((count * scale).alias(name) for name, count in rates.items())
+    return table.select("world", "bin", "step", *rates)
 
 
 def _bin(population: pl.DataFrame, points: int, end: float = 0.0) -> pl.Expr:

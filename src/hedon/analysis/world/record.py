@@ -103,9 +103,9 @@ class WorldRecord:
         Living agents are written only now and then, so an unfinished or killed run lacks those born since.
         """
         steps = self.population["step"].to_numpy()
-        born, died = (np.sort(self.agents[name].drop_nulls().to_numpy()) for name in ("birth_step", "death_step"))
-        known = np.searchsorted(born, steps, "right") - np.searchsorted(died, steps, "right")
-        return int(steps[known == self.population["alive"].to_numpy()].max(initial=0))
+        births, deaths = (np.sort(self.agents[name].drop_nulls().to_numpy()) for name in ("birth_step", "death_step"))
+        alive = np.searchsorted(births, steps, "right") - np.searchsorted(deaths, steps, "right")
+        return int(steps[alive == self.population["alive"].to_numpy()].max(initial=0))
 
     def until(self, step: int) -> "WorldRecord":
         """The world as if its records had ended earlier, except for what living agents had done by then.
@@ -119,13 +119,13 @@ class WorldRecord:
         planned = min(self.planned_step, step)
         if step >= self.last_step:
             return self if planned == self.planned_step else replace(self, planned_step=planned)
-        died_later = pl.col("death_step").is_null() | (pl.col("death_step") > step)
-        known = {"world", "seed", "agent_id", "parent_id", "generation", "birth_step", "birth_energy"}
-        later = [name for name in self.agents.columns if name not in known | set(self.weight_names)]
+        is_living = pl.col("death_step").is_null() | (pl.col("death_step") > step)
+        birth_columns = {"world", "seed", "agent_id", "parent_id", "generation", "birth_step", "birth_energy"}
+        later_columns = [name for name in self.agents.columns if name not in birth_columns | set(self.weight_names)]
         born = self.agents.filter(pl.col("birth_step") <= step)
         return replace(
             self,
-            agents=born.with_columns(pl.when(~died_later).then(pl.col(later))),
+            agents=born.with_columns(pl.when(~is_living).then(pl.col(later_columns))),
             population=self.population.filter(pl.col("step") <= step),
             last_step=step,
             extinct_step=_by(step, self.extinct_step),
@@ -158,12 +158,12 @@ Conditions = Mapping[str, Sequence[WorldRecord]]
 
 def with_roles(rows: Iterable[Mapping[str, Any]], conditions: Conditions) -> list[dict[str, Any]]:
     """Adds to rows with a condition and a weight the role of the gene, from `Gene.role`."""
-    found = []
+    result = []
     for row in rows:
-        at, told = list(row).index("weight") + 1, list(row.items())
+        position, items = list(row).index("weight") + 1, list(row.items())
         role = conditions[row["condition"]][0].gene(row["weight"]).role
-        found.append(dict([*told[:at], ("role", role), *told[at:]]))
-    return found
+        result.append(dict([*items[:position], ("role", role), *items[position:]]))
+    return result
 
 
 def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
@@ -175,15 +175,15 @@ def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
     Raises:
         RecordError, ConfigError: A run cannot be read.
     """
-    kept: dict[tuple[str, int], WorldRecord] = {}
+    longest: dict[tuple[str, int], WorldRecord] = {}
     runs = [run.load() for run in runs]
     labels = _labels(runs)
     for run in runs:
         for world in _run_worlds(run, labels[_key(run)]):
-            before = kept.get((world.condition, world.seed))
-            if before is None or before.last_step < world.last_step:
-                kept[world.condition, world.seed] = world
-    return list(kept.values())
+            previous = longest.get((world.condition, world.seed))
+            if previous is None or previous.last_step < world.last_step:
+                longest[world.condition, world.seed] = world
+    return list(longest.values())
 
 
 def by_condition(worlds: Iterable[WorldRecord]) -> dict[str, list[WorldRecord]]:
@@ -216,36 +216,36 @@ def _by(end: int, step: int | None) -> int | None:
 def _run_worlds(run: Run, condition: str) -> list[WorldRecord]:
     config = run.config
     agents, population = run.agents(skip_damaged=True), run.population(skip_damaged=True)
-    own = kinds(run.columns, config)
+    species_kinds = kinds(run.columns, config)
     if not run.columns.several:
-        return _records(run, condition, config, next(iter(config.species)), agents, population, *own.values())
-    grazed = [pl.col(f"eaten_{kind}").sum().over("world", "step").alias(all_eaten(kind)) for kind in run.food_kinds]
-    agents_of, rows_of = by_species(agents, run.columns), by_species(population.with_columns(grazed), run.columns)
+        return _records(run, condition, config, next(iter(config.species)), agents, population, *species_kinds.values())
+    eaten = [pl.col(f"eaten_{kind}").sum().over("world", "step").alias(all_eaten(kind)) for kind in run.food_kinds]
+    agents_of, rows_of = by_species(agents, run.columns), by_species(population.with_columns(eaten), run.columns)
     worlds = []
-    for name, kind in own.items():
-        absent = [gene for gene in run.weight_names if gene not in kind.genes]
-        dropped = [*absent, *(f"{gene}_{what}" for gene in absent for what in ("mean", "sd"))]
-        mine, rows = (table[name].drop(dropped, strict=False) for table in (agents_of, rows_of))
-        worlds += _records(run, f"{condition}: {name}", config, name, mine, rows, kind)
+    for name, kind in species_kinds.items():
+        absent_genes = [gene for gene in run.weight_names if gene not in kind.genes]
+        dropped = [*absent_genes, *(f"{gene}_{statistic}" for gene in absent_genes for statistic in ("mean", "sd"))]
+        species_agents, rows = (table[name].drop(dropped, strict=False) for table in (agents_of, rows_of))
+        worlds += _records(run, f"{condition}: {name}", config, name, species_agents, rows, kind)
     return [replace(world, apart_step=_apart(world, worlds)) for world in worlds]
 
 
-def _apart(world: WorldRecord, every: Sequence[WorldRecord]) -> int | None:
+def _apart(world: WorldRecord, worlds: Sequence[WorldRecord]) -> int | None:
     """Step at which the first of a world's other species was gone [step]."""
-    others = [each for each in every if each.seed == world.seed and each is not world]
-    return min((each.extinct_step for each in others if each.extinct_step is not None), default=None)
+    others = [other for other in worlds if other.seed == world.seed and other is not world]
+    return min((other.extinct_step for other in others if other.extinct_step is not None), default=None)
 
 
 def _records(
     run: Run, condition: str, config: Config, species: str, agents: pl.DataFrame, population: pl.DataFrame, kind: Kind
 ) -> list[WorldRecord]:
-    worlds, planned = [], _planned_step(run, population)
+    worlds, planned_step = [], _planned_step(run, population)
     for index, seed in enumerate(run.manifest.seeds):
         # Contiguous: sums must not depend on the chunks in which rows were written.
-        mine = agents.filter(pl.col("world") == index).sort("agent_id").rechunk()
+        world_agents = agents.filter(pl.col("world") == index).sort("agent_id").rechunk()
         rows = population.filter(pl.col("world") == index).rechunk()
-        ends = [rows["step"].max(), mine["birth_step"].max(), mine["death_step"].max()]
-        last = max((int(end) for end in ends if isinstance(end, int)), default=0)
+        steps = [rows["step"].max(), world_agents["birth_step"].max(), world_agents["death_step"].max()]
+        last_step = max((int(end) for end in steps if isinstance(end, int)), default=0)
         worlds.append(
             WorldRecord(
                 condition,
@@ -255,14 +255,14 @@ def _records(
                 kind.foods,
                 kind.rewards,
                 kind.neutral,
-                mine,
+                world_agents,
                 rows,
-                last,
-                gone_step(run, index, mine, rows),
+                last_step,
+                gone_step(run, index, world_agents, rows),
                 prey=kind.prey,
                 species=species,
                 first_step=run.manifest.parent.step if run.manifest.parent else 0,
-                planned_step=planned,
+                planned_step=planned_step,
                 hunts=bool(run.columns.prey),
             )
         )
@@ -279,33 +279,35 @@ def _planned_step(run: Run, population: pl.DataFrame) -> int:
 
 def gone_step(run: Run, index: int, agents: pl.DataFrame, population: pl.DataFrame) -> int | None:
     """Step at which the last agent of one species of a world was gone [step]; None while any is alive."""
-    known = run.manifest.extinct_steps[index] if run.manifest.extinct_steps else None
+    manifest_step = run.manifest.extinct_steps[index] if run.manifest.extinct_steps else None
     if not run.columns.several:  # the world's end is that of its species
-        return extinct_step(population) if known is None else known
+        return extinct_step(population) if manifest_step is None else manifest_step
     gone = extinct_step(population)
-    died = agents["death_step"]
-    if gone is None or not len(died) or died.null_count():
+    deaths = agents["death_step"]
+    if gone is None or not len(deaths) or deaths.null_count():
         return gone
-    return int(died.to_numpy().max())  # within the interval of the rows
+    return int(deaths.to_numpy().max())  # within the interval of the rows
 
 
 def _labels(runs: Sequence[Run]) -> dict[str, str]:
     """A unique short name of each condition, by `_key`: "baseline (released)", or with the settings that differ."""
-    first: dict[str, Run] = {}
+    first_runs: dict[str, Run] = {}
     for run in runs:
-        first.setdefault(_key(run), run)
-    alike: dict[str, list[str]] = {}
-    for key, run in first.items():
+        first_runs.setdefault(_key(run), run)
+    keys_by_name: dict[str, list[str]] = {}
+    for key, run in first_runs.items():
         name = run.manifest.name or run.manifest.preset or run.path.name
-        alike.setdefault(f"{name} ({run.manifest.fidelity})" if run.manifest.fidelity else name, []).append(key)
+        keys_by_name.setdefault(f"{name} ({run.manifest.fidelity})" if run.manifest.fidelity else name, []).append(key)
     labels: dict[str, str] = {}
-    for label, keys in alike.items():
-        differs = _differences([first[key] for key in keys]) if len(keys) > 1 else [""]
-        for key, words in zip(keys, differs, strict=True):
-            own = f"{label}: {words}" if words else f"{label}, modified" if first[key].manifest.modified else label
-            while own in labels.values():
-                own += f" [{first[key].path.name}]"
-            labels[key] = own
+    for label, keys in keys_by_name.items():
+        differences = _differences([first_runs[key] for key in keys]) if len(keys) > 1 else [""]
+        for key, words in zip(keys, differences, strict=True):
+            unique_label = (
+                f"{label}: {words}" if words else f"{label}, modified" if first_runs[key].manifest.modified else label
+            )
+            while unique_label in labels.values():
+                unique_label += f" [{first_runs[key].path.name}]"
+            labels[key] = unique_label
     return labels
 
 
@@ -317,11 +319,11 @@ def _key(run: Run) -> str:
 def _differences(runs: Sequence[Run]) -> list[str]:
     """A phrase for each run with the settings that distinguish it; empty if these are too many for a name."""
     values = [flatten(run.config) for run in runs]
-    paths = dict.fromkeys(path for each in values for path in each)
-    varied = [path for path in paths if any(each.get(path) != values[0].get(path) for each in values)]
+    paths = dict.fromkeys(path for settings in values for path in settings)
+    varied = [path for path in paths if any(settings.get(path) != values[0].get(path) for settings in values)]
     if len(varied) > MOST_DIFFERENCES:
         return [""] * len(runs)
-    return [", ".join(f"{path} {_said(each.get(path))}" for path in varied) for each in values]
+    return [", ".join(f"{path} {_said(settings.get(path))}" for path in varied) for settings in values]
 
 
 def _said(value: Any) -> str:

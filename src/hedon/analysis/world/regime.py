@@ -73,11 +73,11 @@ def regimes(
     if population.is_empty():
         return []
     edges = np.linspace(0, population.height, min(intervals, population.height) + 1).astype(int).tolist()
-    last = population[edges[-2] :]
-    if len(edges) > 2 and last["steps"].sum() < whole_window(population) and last["alive"][-1]:
+    last_rows = population[edges[-2] :]
+    if len(edges) > 2 and last_rows["steps"].sum() < whole_window(population) and last_rows["alive"][-1]:
         del edges[-2]
-    own = choose_species(species, config)
-    return [interval_regime(population[a:b], config, own) for a, b in pairwise(edges)]
+    species_name = choose_species(species, config)
+    return [interval_regime(population[a:b], config, species_name) for a, b in pairwise(edges)]
 
 
 def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> dict[str, Any]:
@@ -92,27 +92,27 @@ def interval_regime(rows: pl.DataFrame, config: Config, species: str) -> dict[st
     """
     require_one_species(rows)
     sums = {name: float(rows[name].sum()) for name in _SUMMED}
-    steps, lived = int(rows["steps"].sum()), sums["agent_steps"]
-    refused = sums["births_failed_full"] + sums["births_failed_space"]
+    steps, agent_steps = int(rows["steps"].sum()), sums["agent_steps"]
+    refusals = sums["births_failed_full"] + sums["births_failed_space"]
     ends, lengths = rows["step"].to_numpy(), rows["steps"].to_numpy()
-    own = config.species[species]
-    factors = diet(config, own)
+    species_config = config.species[species]
+    factors = diet(config, species_config)
     energies = {kind: factors.get(kind, 0.0) * food.gives.get("energy", 0.0) for kind, food in config.food.items()}
     feeding = {kind: config.food[kind] for kind, energy in energies.items() if energy > 0}
-    grown = sum(
+    growth = sum(
         energies[kind] * food.growth_rate * float(factor_at(food.schedule, "growth_rate", ends) @ lengths)
         for kind, food in feeding.items()
     )
     eaten = sum(energies[kind] * _eaten(rows, kind) for kind in feeding)
-    scale = float(factor_at(own.hazard.schedule, "scale", ends) @ lengths) / steps
-    starving = scale * float(hazard(own.hazard, 0.0, 0.0))
+    scale = float(factor_at(species_config.hazard.schedule, "scale", ends) @ lengths) / steps
+    starving = scale * float(hazard(species_config.hazard, 0.0, 0.0))
     damage = float(rows["energy_damage"].sum()) if "energy_damage" in rows.columns else 0.0
     rates = {
         "hunger": _ratio(sums["energy_forgiven"], sums["energy_basic"] + sums["energy_action"] + damage),
-        "refusal": _ratio(refused, refused + sums["births"]),
-        "uptake": _ratio(eaten, grown),
-        "turnover": _ratio(0.5 * (sums["births"] + sums["deaths"]), lived * starving),
-        "crowding": lived / steps / own.population.capacity,
+        "refusal": _ratio(refusals, refusals + sums["births"]),
+        "uptake": _ratio(eaten, growth),
+        "turnover": _ratio(0.5 * (sums["births"] + sums["deaths"]), agent_steps * starving),
+        "crowding": agent_steps / steps / species_config.population.capacity,
     }
     return {"step": int(rows["step"][-1]), "steps": steps, "regime": _name(int(rows["alive"][-1]), **rates)} | rates
 

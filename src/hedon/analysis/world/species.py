@@ -56,20 +56,20 @@ def kinds(columns: Columns, config: Config | None = None) -> Mapping[str, Kind]:
         ArgumentError: There are several species but no config.
     """
     if not columns.several:
-        only = Kind(columns.food_kinds, columns.prey, columns.reward_names, columns.neutral_names)
-        return {columns.species[0]: only}
+        single_kind = Kind(columns.food_kinds, columns.prey, columns.reward_names, columns.neutral_names)
+        return {columns.species[0]: single_kind}
     if config is None:
         raise ArgumentError("config: is needed where there are several species")
-    found = {}
+    species_kinds = {}
     for name, layout in layouts(config).items():
-        eaten, own = diet(config, config.species[name]), set(layout.gene_names)
-        found[name] = Kind(
+        eaten, gene_names = diet(config, config.species[name]), set(layout.gene_names)
+        species_kinds[name] = Kind(
             foods=tuple(kind for kind in columns.food_kinds if kind in eaten),
-            prey=tuple(each for each in columns.prey if each in eaten),
-            rewards=tuple(gene for gene in columns.reward_names if gene in own),
-            neutral=tuple(gene for gene in columns.neutral_names if gene in own),
+            prey=tuple(prey for prey in columns.prey if prey in eaten),
+            rewards=tuple(gene for gene in columns.reward_names if gene in gene_names),
+            neutral=tuple(gene for gene in columns.neutral_names if gene in gene_names),
         )
-    return found
+    return species_kinds
 
 
 def require_one_species(rows: pl.DataFrame) -> None:
