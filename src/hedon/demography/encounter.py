@@ -43,10 +43,10 @@ def encounter_rates(
     Returns:
         Visits per agent, place and step, (kinds, BINS), over equal parts of the time; 0 for a kind without places.
     """
-    counts, size = [len(each) for each in places], np.array([config.arena.width, config.arena.height])
+    counts, size = [len(points) for points in places], np.array([config.arena.width, config.arena.height])
     start = throw(
         lambda count: rng.random((count, 2)) * size,
-        lambda tried: is_within_walls(config, own.body.radius, tried),
+        lambda positions: is_within_walls(config, own.body.radius, positions),
         0.0,
         _WALKERS,
     )
@@ -55,26 +55,27 @@ def encounter_rates(
         return visits
     kind, sites = np.repeat(np.arange(len(places)), counts), np.vstack(places)
     tree, reach = spatial.KDTree(sites), own.body.radius + config.world.food_radius
-    left = np.full((len(start), len(sites)), -_PAUSE - 1)  # when an agent last touched a place that it had visited
+    # When an agent last touched a place that it had visited.
+    last_touch = np.full((len(start), len(sites)), -_PAUSE - 1)
     middle = np.exp(1j * math.radians(own.sensor.mouth_center))
     edge = math.cos(math.radians(own.sensor.mouth_spread)) if own.sensor.mouth_spread < 180 else -2.0
     walk = unlearned_walk(config, own, start[:, 0] + 1j * start[:, 1], steps, rng)
     for step, (place, heading) in enumerate(walk, start=1):
         if step % _STRIDE:
             continue
-        near = tree.query_ball_point(np.column_stack([place.real, place.imag]), reach)
-        lengths = [len(each) for each in near]
+        neighbors = tree.query_ball_point(np.column_stack([place.real, place.imag]), reach)
+        lengths = [len(points) for points in neighbors]
         if not sum(lengths):
             continue
-        who, what = np.repeat(np.arange(len(start)), lengths), np.concatenate(near).astype(np.intp)
-        toward = sites[what] @ [1, 1j] - place[who]
-        ahead = (toward * (heading[who] * middle).conj()).real
+        agent, site = np.repeat(np.arange(len(start)), lengths), np.concatenate(neighbors).astype(np.intp)
+        toward = sites[site] @ [1, 1j] - place[agent]
+        ahead = (toward * (heading[agent] * middle).conj()).real
         touches = ahead >= edge * np.abs(toward)
-        since = step - left[who, what]
-        new = touches & (since > _PAUSE) & (step > _STRIDE)  # nothing grows under an agent
-        visits[:, (step - 1) * BINS // steps] += np.bincount(kind[what[new]], minlength=len(places))
-        stays = touches | (since <= _PAUSE) | (step == _STRIDE)
-        left[who[stays], what[stays]] = step
+        elapsed = step - last_touch[agent, site]
+        is_visit = touches & (elapsed > _PAUSE) & (step > _STRIDE)  # nothing grows under an agent
+        visits[:, (step - 1) * BINS // steps] += np.bincount(kind[site[is_visit]], minlength=len(places))
+        is_near = touches | (elapsed <= _PAUSE) | (step == _STRIDE)
+        last_touch[agent[is_near], site[is_near]] = step
     return visits / (len(start) * np.maximum(counts, 1)[:, None] * (steps / BINS))
 
 
@@ -91,7 +92,7 @@ def gaps(config: Config, own: SpeciesConfig, scene: Floats) -> float:
     """
     if len(scene) < 2:
         return 0.0
-    wide = 2.0 * (own.body.radius + config.world.food_radius)
-    mouth = wide * math.sin(math.radians(min(own.sensor.mouth_spread, 90.0)))
+    body_spacing = 2.0 * (own.body.radius + config.world.food_radius)
+    mouth_spacing = body_spacing * math.sin(math.radians(min(own.sensor.mouth_spread, 90.0)))
     tree = spatial.KDTree(scene)
-    return float(tree.count_neighbors(tree, wide) - tree.count_neighbors(tree, mouth)) / len(scene)
+    return float(tree.count_neighbors(tree, body_spacing) - tree.count_neighbors(tree, mouth_spacing)) / len(scene)

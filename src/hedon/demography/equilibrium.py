@@ -46,26 +46,26 @@ def equilibria(config: Config, species: str, ground: Ground, success: Floats) ->
     In each, all agents have the same energy. In a run some eat far more than others, and have most of the children; the
     last equilibrium, of agents that are always full, therefore bounds the length of a generation.
     """
-    own = config.species[species]
-    if not gains(config, own):
+    species_config = config.species[species]
+    if not gains(config, species_config):
         return ()
-    whole = supply(config, own, lambda food: mean_factor(food.schedule, "growth_rate"))
-    met = _met(config, species, ground)
+    total_supply = supply(config, species_config, lambda food: mean_factor(food.schedule, "growth_rate"))
+    unlearned_income = _met(config, species, ground)
     return (
-        _settle("unlearned", own, success, lambda alive, lifetime: met(alive, lifetime)),
-        _settle("all", own, success, lambda alive, _: whole),
-        _settle("full", own, success, lambda alive, _: math.inf),
+        _settle("unlearned", species_config, success, lambda alive, lifetime: unlearned_income(alive, lifetime)),
+        _settle("all", species_config, success, lambda alive, _: total_supply),
+        _settle("full", species_config, success, lambda alive, _: math.inf),
     )
 
 
 def _met(config: Config, species: str, ground: Ground) -> Callable[[float, float], float]:
     """Function for the energy per step of a number of agents with a mean age, without learning [energy/step]."""
-    own = config.species[species]
-    value = gains(config, own)
+    species_config = config.species[species]
+    value = gains(config, species_config)
     energy = np.array([value.get(kind, 0.0) for kind in config.food])
     growth = np.array([food.growth_rate * mean_factor(food.schedule, "growth_rate") for food in config.food.values()])
     limit = np.array([each.limit for each in ground.places])
-    theirs = sum(
+    other_visits = sum(
         (
             ground.visits[name].mean(axis=1) * each.population.initial_count
             for name, each in config.species.items()
@@ -75,22 +75,24 @@ def _met(config: Config, species: str, ground: Ground) -> Callable[[float, float
     )
 
     def energy_met(alive: float, age: float) -> float:
-        mine = alive * ground.mean_visits(species, age)
-        rate = mine + theirs
+        own_visits = alive * ground.mean_visits(species, age)
+        rate = own_visits + other_visits
         eaten = np.minimum(growth, rate * limit)
-        return float(energy @ (eaten * np.divide(mine, rate, out=np.zeros(len(rate)), where=rate > 0)))
+        return float(energy @ (eaten * np.divide(own_visits, rate, out=np.zeros(len(rate)), where=rate > 0)))
 
     return energy_met
 
 
-def _settle(how: str, own: SpeciesConfig, success: Floats, found: Callable[[float, float], float]) -> Equilibrium:
+def _settle(
+    feeding: str, species: SpeciesConfig, success: Floats, income: Callable[[float, float], float]
+) -> Equilibrium:
     """Equilibrium, given the energy that a number of agents with a mean lifetime find [energy/step]."""
-    hazard, birth = mean_hazard(own), birth_of(own)
-    pairs = 0.5 if own.birth.mating == "pairs" else 1.0
+    hazard, birth = mean_hazard(species), birth_of(species)
+    pairs = 0.5 if species.birth.mating == "pairs" else 1.0
     falling = np.minimum.accumulate(success)
 
     def births(energy: float) -> float:
-        return pairs * float(reproduction_number(hazard, birth, energy)) if own.birth.kappa else 0.0
+        return pairs * float(reproduction_number(hazard, birth, energy)) if species.birth.kappa else 0.0
 
     def room(energy: float) -> float:
         """Number of agents at which births and deaths balance, at an energy; 0 if deaths always prevail."""
@@ -100,10 +102,10 @@ def _settle(how: str, own: SpeciesConfig, success: Floats, found: Callable[[floa
     def surplus(energy: float) -> float:
         """Energy gained per agent and step when the number of agents is in balance [energy/step]."""
         alive, lifetime = max(room(energy), 1.0), float(expected_lifetime(hazard, energy))
-        lost = energy * (own.energy.decay + (1.0 / lifetime if lifetime > 0 else 1.0))
-        return found(alive, lifetime) / alive - need(own) - lost
+        loss = energy * (species.energy.decay + (1.0 / lifetime if lifetime > 0 else 1.0))
+        return income(alive, lifetime) / alive - need(species) - loss
 
-    low, high = 0.0, own.energy.capacity
+    low, high = 0.0, species.energy.capacity
     if surplus(high) >= 0:
         low = high
     elif surplus(low) < 0:
@@ -113,16 +115,20 @@ def _settle(how: str, own: SpeciesConfig, success: Floats, found: Callable[[floa
         low, high = (middle, high) if surplus(middle) >= 0 else (low, middle)
     alive, energy = room(low), low
     if births(low) <= 1:
-        return Equilibrium(how, 0.0, math.nan, math.nan, math.nan)
+        return Equilibrium(feeding, 0.0, math.nan, math.nan, math.nan)
     lifetime, generation = float(expected_lifetime(hazard, energy)), float(generation_time(hazard, energy))
-    if own.energy.at_zero == "death" and surplus(low) < 0:
-        few, many = 0.0, alive
+    if species.energy.at_zero == "death" and surplus(low) < 0:
+        low_count, high_count = 0.0, alive
         for _ in range(_HALVINGS):
-            middle = 0.5 * (few + many)
-            few, many = (middle, many) if found(middle, lifetime) >= need(own) * middle else (few, middle)
-        alive = few
-        placed = float(np.interp(alive, np.arange(len(falling)), falling))
-        lifetime = generation = 1.0 / (pairs * float(birth_rate(birth, energy)) * placed) if placed else math.nan
+            middle = 0.5 * (low_count + high_count)
+            low_count, high_count = (
+                (middle, high_count) if income(middle, lifetime) >= need(species) * middle else (low_count, middle)
+            )
+        alive = low_count
+        success_share = float(np.interp(alive, np.arange(len(falling)), falling))
+        lifetime = generation = (
+            1.0 / (pairs * float(birth_rate(birth, energy)) * success_share) if success_share else math.nan
+        )
     if alive < 1:
-        return Equilibrium(how, 0.0, math.nan, math.nan, math.nan)
-    return Equilibrium(how, alive, energy, lifetime, generation)
+        return Equilibrium(feeding, 0.0, math.nan, math.nan, math.nan)
+    return Equilibrium(feeding, alive, energy, lifetime, generation)

@@ -44,10 +44,10 @@ def draw_food_places(
     law, size = food.placement, np.array([config.arena.width, config.arena.height])
     if law.form == "uniform":
         return rng.random((count, 2)) * size
-    which = rng.integers(len(law.centers), size=count) if law.form == "mixture" else np.full(count, turn)
-    middle = np.array(law.centers)[which] + step * np.array(law.drift)
-    around = rng.uniform(-1, 1, (count, 2)) if law.form == "rectangle" else rng.normal(size=(count, 2))
-    return np.clip(middle, 0.0, size) + np.array(law.sd) * around
+    center = rng.integers(len(law.centers), size=count) if law.form == "mixture" else np.full(count, turn)
+    middle = np.array(law.centers)[center] + step * np.array(law.drift)
+    offsets = rng.uniform(-1, 1, (count, 2)) if law.form == "rectangle" else rng.normal(size=(count, 2))
+    return np.clip(middle, 0.0, size) + np.array(law.sd) * offsets
 
 
 def throw(
@@ -72,21 +72,21 @@ def throw(
     Returns:
         Centers of those that found a place [u], (found, 2).
     """
-    placed, tried, missed = np.empty((0, 2)), 0, 0
-    while len(placed) < count and missed < tries and tried < budget:
+    placed, attempts, misses = np.empty((0, 2)), 0, 0
+    while len(placed) < count and misses < tries and attempts < budget:
         places = draw(_BATCH)
         open_places = free(places)
         if len(placed):
             open_places &= spatial.KDTree(placed).query(places)[0] >= reach
-        at = np.flatnonzero(open_places)
-        near = np.hypot(*np.moveaxis(places[at, None] - places[at], 2, 0)) < reach
-        taken = np.zeros(len(at), bool)
-        for i in range(len(at)):
-            taken[i] = not (near[i] & taken).any()
-        chosen = at[taken][: count - len(placed)]
+        indices = np.flatnonzero(open_places)
+        overlaps = np.hypot(*np.moveaxis(places[indices, None] - places[indices], 2, 0)) < reach
+        accepted = np.zeros(len(indices), bool)
+        for i in range(len(indices)):
+            accepted[i] = not (overlaps[i] & accepted).any()
+        chosen = indices[accepted][: count - len(placed)]
         placed = np.vstack([placed, places[chosen]])
-        tried += _BATCH
-        missed = _BATCH - 1 - int(chosen[-1]) if len(chosen) else missed + _BATCH
+        attempts += _BATCH
+        misses = _BATCH - 1 - int(chosen[-1]) if len(chosen) else misses + _BATCH
     return placed
 
 
@@ -119,13 +119,13 @@ def food_places(config: Config, food: FoodConfig, steps: int, rng: np.random.Gen
     """
     turns = len(food.placement.centers) if food.placement.form == "switching" else 1
     scenes = [_fill(config, food, steps, rng, scene % turns) for scene in range(SCENES)]
-    drawn = np.vstack(
+    draws = np.vstack(
         [draw_food_places(config, food, 1024, scene / SCENES * steps, rng, scene % turns) for scene in range(SCENES)]
     )
     sample = np.vstack(scenes)
     return FoodPlaces(
-        limit=float(np.mean([len(placed) for placed in scenes])),
-        share=float(is_within_walls(config, config.world.food_radius, drawn).mean()),
+        limit=float(np.mean([len(foods) for foods in scenes])),
+        share=float(is_within_walls(config, config.world.food_radius, draws).mean()),
         sample=sample[rng.permutation(len(sample))[:_SAMPLE]],
         scene=scenes[0],
     )
@@ -135,26 +135,26 @@ def _fill(config: Config, food: FoodConfig, steps: int, rng: np.random.Generator
     """Places of foods that grow and are not eaten; a drifting center leaves them behind."""
     radius, moves = config.world.food_radius, any(food.placement.drift)
     reach = max(2 * radius, food.placement.spacing)
-    parts = _PARTS if moves else 1
-    budget = max(min(food.candidates * steps, TRIES) // parts, 1)
+    stages = _PARTS if moves else 1
+    budget = max(min(food.candidates * steps, TRIES) // stages, 1)
     placed = np.empty((0, 2))
-    for part in range(parts):
-        grown = food.initial_count + food.growth_rate * steps * (part + 1) / parts
-        there = spatial.KDTree(placed) if len(placed) else None
+    for stage in range(stages):
+        food_count = food.initial_count + food.growth_rate * steps * (stage + 1) / stages
+        tree = spatial.KDTree(placed) if len(placed) else None
 
-        def free(places: Floats, there: Any = there) -> NDArray[np.bool_]:
-            clear = is_within_walls(config, radius, places)
-            return clear if there is None else clear & (there.query(places)[0] >= reach)
+        def free(places: Floats, tree: Any = tree) -> NDArray[np.bool_]:
+            is_clear = is_within_walls(config, radius, places)
+            return is_clear if tree is None else is_clear & (tree.query(places)[0] >= reach)
 
-        more = throw(
-            lambda count, part=part: draw_food_places(config, food, count, steps * part / parts, rng, turn),
+        added = throw(
+            lambda count, stage=stage: draw_food_places(config, food, count, steps * stage / stages, rng, turn),
             free,
             reach,
-            (min(food.capacity, int(grown)) if moves else food.capacity) - len(placed),
+            (min(food.capacity, int(food_count)) if moves else food.capacity) - len(placed),
             tries=budget,
             budget=budget,
         )
-        placed = np.vstack([placed, more])
+        placed = np.vstack([placed, added])
     return placed
 
 
@@ -165,22 +165,22 @@ def missing_at_start(config: Config, rng: np.random.Generator) -> str:
 
     def free(radius: float) -> Callable[[Floats], NDArray[np.bool_]]:
         def of(places: Floats) -> NDArray[np.bool_]:
-            clear = is_within_walls(config, radius, places)
-            for other in np.unique(radii):
-                clear &= spatial.KDTree(bodies[radii == other]).query(places)[0] >= radius + other
-            return clear
+            is_clear = is_within_walls(config, radius, places)
+            for other_radius in np.unique(radii):
+                is_clear &= spatial.KDTree(bodies[radii == other_radius]).query(places)[0] >= radius + other_radius
+            return is_clear
 
         return of
 
     crowd = [
-        (f"founders of {name}", own.population.initial_count, own.body.radius, 0.0, None)
-        for name, own in config.species.items()
+        (f"founders of {name}", species.population.initial_count, species.body.radius, 0.0, None)
+        for name, species in config.species.items()
     ]
     foods = [
         (f"foods of the kind {name}", food.initial_count, config.world.food_radius, food.placement.spacing, food)
         for name, food in config.food.items()
     ]
-    for what, count, radius, spacing, food in (*crowd, *foods):
+    for label, count, radius, spacing, food in (*crowd, *foods):
         placed = throw(
             lambda n, food=food: (
                 rng.random((n, 2)) * size if food is None else draw_food_places(config, food, n, 0, rng)
@@ -190,6 +190,6 @@ def missing_at_start(config: Config, rng: np.random.Generator) -> str:
             count,
         )
         if len(placed) < count:
-            return f"{len(placed):,} of {count:,} {what} find a place"
+            return f"{len(placed):,} of {count:,} {label} find a place"
         bodies, radii = np.vstack([bodies, placed]), np.append(radii, np.full(count, radius))
     return ""

@@ -62,16 +62,16 @@ def forecast(config: Config, species: str | None = None) -> Forecast:
     """
     species = choose_species(species, config)
     config = _of_mean_founders(config)
-    own, rng = config.species[species], np.random.default_rng(_SEED)
-    capacity = own.population.capacity
+    species_config, rng = config.species[species], np.random.default_rng(_SEED)
+    capacity = species_config.population.capacity
     sizes = np.unique(np.linspace(1, max(capacity - 1, 1), _SIZES).astype(int)).tolist()
-    found = placement_success(config, species, sizes, rng)
-    room = (*(Room(n, float(success)) for n, success in zip(sizes, found, strict=True)), Room(capacity, 0.0))
-    levels = levels_of(own, room[:-1])
-    supplied = supply(config, own, lambda food: mean_factor(food.schedule, "growth_rate"))
-    missing = [each for each in (missing_at_start(config, rng) for _ in range(_STARTS)) if each]
+    successes = placement_success(config, species, sizes, rng)
+    room = (*(Room(n, float(success)) for n, success in zip(sizes, successes, strict=True)), Room(capacity, 0.0))
+    levels = levels_of(species_config, room[:-1])
+    supplied = supply(config, species_config, lambda food: mean_factor(food.schedule, "growth_rate"))
+    shortages = [each for each in (missing_at_start(config, rng) for _ in range(_STARTS)) if each]
     intake, settled = (), ()
-    if gains(config, own) and len(missing) < _STARTS:
+    if gains(config, species_config) and len(shortages) < _STARTS:
         ground = survey(config, rng)
         success = np.interp(np.arange(capacity + 1), [each.alive for each in room], [each.success for each in room])
         intake = first_intake(config, species, ground, success)
@@ -79,13 +79,13 @@ def forecast(config: Config, species: str | None = None) -> Forecast:
     return Forecast(
         levels=levels,
         room=room,
-        need=need(own),
+        need=need(species_config),
         supply=supplied,
-        fed=fed(config, own, supplied),
-        force=fresh_force(own.motor),
+        fed=fed(config, species_config, supplied),
+        force=fresh_force(species_config.motor),
         intake=intake,
         equilibria=settled,
-        warnings=(*_start_warnings(missing), *_dense_warnings(intake), *warnings(config, species, levels)),
+        warnings=(*_start_warnings(shortages), *_dense_warnings(intake), *warnings(config, species, levels)),
     )
 
 
@@ -102,24 +102,24 @@ def setting_warnings(config: Config, species: str | None = None) -> tuple[str, .
 
 def _of_mean_founders(config: Config) -> Config:
     """The config with gene-set numbers as in founders with mean genes."""
-    return replace(config, species={name: of_mean_founders(own) for name, own in config.species.items()})
+    return replace(config, species={name: of_mean_founders(species) for name, species in config.species.items()})
 
 
-def _start_warnings(missing: list[str]) -> Iterator[str]:
+def _start_warnings(shortages: list[str]) -> Iterator[str]:
     """Warnings about what does not fit into a new world."""
     remedy = "Lower the initial counts, enlarge the arena, or spread the places of food."
-    if len(missing) == _STARTS:
-        yield f"A run cannot start: there is no room for all that a world begins with; {missing[0]}. {remedy}"
-    elif missing:
+    if len(shortages) == _STARTS:
+        yield f"A run cannot start: there is no room for all that a world begins with; {shortages[0]}. {remedy}"
+    elif shortages:
         yield (
-            f"A run may fail to start: in {len(missing)} of {_STARTS} sampled scenes there was no room for all that a "
-            f"world begins with; {missing[0]}. {remedy}"
+            f"A run may fail to start: in {len(shortages)} of {_STARTS} sampled scenes there was no room for all that "
+            f"a world begins with; {shortages[0]}. {remedy}"
         )
 
 
 def _dense_warnings(intake: tuple[KindIntake, ...]) -> Iterator[str]:
     """Warnings about foods that are too dense to predict how much of them is eaten."""
-    dense = [each.kind for each in intake if each.dense]
+    dense = [kind_intake.kind for kind_intake in intake if kind_intake.dense]
     if dense:
         yield (
             f"Pieces of {' and '.join(dense)} lie so close together that bodies get stuck between two of them, out of "

@@ -92,14 +92,18 @@ def survey(config: Config, rng: np.random.Generator) -> Ground:
     """Samples the possible places of each kind of food, and how often agents of each species visit them."""
     places = tuple(food_places(config, food, FORECAST_STEPS, rng) for food in config.food.values())
     visits = {}
-    for name, own in config.species.items():
-        eaten = gains(config, own)
+    for name, species in config.species.items():
+        eaten = gains(config, species)
         sites = [
-            each.sample if kind in eaten else each.sample[:0] for kind, each in zip(config.food, places, strict=True)
+            kind_places.sample if kind in eaten else kind_places.sample[:0]
+            for kind, kind_places in zip(config.food, places, strict=True)
         ]
-        visits[name] = encounter_rates(config, own, sites, FORECAST_STEPS, rng)
-    stuck = {name: np.array([gaps(config, own, each.scene) for each in places]) for name, own in config.species.items()}
-    return Ground(places, visits, stuck)
+        visits[name] = encounter_rates(config, species, sites, FORECAST_STEPS, rng)
+    gaps_by_species = {
+        name: np.array([gaps(config, species, kind_places.scene) for kind_places in places])
+        for name, species in config.species.items()
+    }
+    return Ground(places, visits, gaps_by_species)
 
 
 def first_intake(config: Config, species: str, ground: Ground, success: Floats) -> tuple[KindIntake, ...]:
@@ -111,41 +115,51 @@ def first_intake(config: Config, species: str, ground: Ground, success: Floats) 
     Returns:
         One result for each kind of food that the species eats.
     """
-    own, kinds, value = config.species[species], list(config.food.values()), gains(config, config.species[species])
+    species_config, kinds, value = (
+        config.species[species],
+        list(config.food.values()),
+        gains(config, config.species[species]),
+    )
     energy_of = np.array([value.get(kind, 0.0) for kind in config.food])
     repeats = FORECAST_STEPS // _STRIDE // BINS
     rates = np.repeat(ground.visits[species], repeats, axis=1)
-    others = np.zeros_like(rates)
-    for name, each in config.species.items():
+    other_rates = np.zeros_like(rates)
+    for name, other in config.species.items():
         if name != species:
-            others += np.repeat(ground.visits[name], repeats, axis=1) * each.population.initial_count
+            other_rates += np.repeat(ground.visits[name], repeats, axis=1) * other.population.initial_count
     cohorts = np.zeros(FORECAST_STEPS // _STRIDE + 1)  # living agents by time of birth
-    cohorts[0] = own.population.initial_count
-    held = own.energy.initial * cohorts[0]
+    cohorts[0] = species_config.population.initial_count
+    total_energy = species_config.energy.initial * cohorts[0]
     foods = _Foods(np.array([float(food.initial_count) for food in kinds]), *np.zeros((2, len(kinds))))
     foods = foods._replace(present=np.minimum(foods.stock, _limits(kinds, ground, foods.eaten)))
-    total, seen = np.zeros(len(kinds)), np.zeros(len(kinds))
+    total, present_sum = np.zeros(len(kinds)), np.zeros(len(kinds))
     for i in range(len(cohorts) - 1):
-        mine, alive = rates[:, : i + 1] @ cohorts[i::-1], cohorts.sum()
-        rate = mine + others[:, i]
-        before = foods.eaten
-        foods = _feed(config, ground, foods, rate, _covered(config, own, alive), i * _STRIDE)
-        meals = (foods.eaten - before) * np.divide(mine, rate, out=np.zeros(len(kinds)), where=rate > 0)
+        own_rate, alive = rates[:, : i + 1] @ cohorts[i::-1], cohorts.sum()
+        rate = own_rate + other_rates[:, i]
+        eaten_before = foods.eaten
+        foods = _feed(config, ground, foods, rate, _covered(config, species_config, alive), i * _STRIDE)
+        meals = (foods.eaten - eaten_before) * np.divide(own_rate, rate, out=np.zeros(len(kinds)), where=rate > 0)
         total += meals
-        seen += foods.present
-        held = _live(own, cohorts, i, held, float(energy_of @ meals), success)
+        present_sum += foods.present
+        total_energy = _live(species_config, cohorts, i, total_energy, float(energy_of @ meals), success)
     return tuple(
-        _mean_intake(kind, food, ground.places[k].limit, total[k], seen[k] * _STRIDE, ground.gaps[species][k])
+        _mean_intake(kind, food, ground.places[k].limit, total[k], present_sum[k] * _STRIDE, ground.gaps[species][k])
         for k, (kind, food) in enumerate(config.food.items())
         if kind in value
     )
 
 
-def _mean_intake(kind: str, food: FoodConfig, limit: float, total: float, seen: float, gaps: float) -> KindIntake:
+def _mean_intake(
+    kind: str, food: FoodConfig, limit: float, total: float, present_sum: float, gaps: float
+) -> KindIntake:
     """Intake of a kind, from sums over the time of a forecast."""
     factor = factor_at(food.schedule, "growth_rate", np.arange(FORECAST_STEPS))
-    growth, eaten, present = food.growth_rate * float(factor.mean()), total / FORECAST_STEPS, seen / FORECAST_STEPS
-    most = food.initial_count / FORECAST_STEPS + growth
+    growth, eaten, present = (
+        food.growth_rate * float(factor.mean()),
+        total / FORECAST_STEPS,
+        present_sum / FORECAST_STEPS,
+    )
+    upper_bound = food.initial_count / FORECAST_STEPS + growth
     dense = gaps * present > _STUCK * limit
     return KindIntake(
         kind=kind,
@@ -153,7 +167,7 @@ def _mean_intake(kind: str, food: FoodConfig, limit: float, total: float, seen: 
         growth=growth,
         low=0.0 if dense else float(eaten) / FACTOR,
         eaten=float(eaten),
-        high=most if dense else min(float(eaten) * FACTOR, most),
+        high=upper_bound if dense else min(float(eaten) * FACTOR, upper_bound),
         present=float(present),
         dense=bool(dense),
     )
@@ -169,9 +183,9 @@ def _limits(kinds: list[FoodConfig], ground: Ground, eaten: Floats) -> Floats:
     return limit
 
 
-def _covered(config: Config, own: SpeciesConfig, alive: float) -> float:
+def _covered(config: Config, species: SpeciesConfig, alive: float) -> float:
     """Share of the arena in which agents leave no room for food."""
-    reach = own.body.radius + config.world.food_radius
+    reach = species.body.radius + config.world.food_radius
     return -math.expm1(-alive * math.pi * reach**2 / (config.arena.width * config.arena.height))
 
 
@@ -179,32 +193,36 @@ def _feed(config: Config, ground: Ground, foods: _Foods, rate: Floats, covered: 
     """Lets foods grow and be eaten for `_STRIDE` steps, each kind at its rate [1/step]."""
     kinds = list(config.food.values())
     growth = np.array([food.growth_rate * float(factor_at(food.schedule, "growth_rate", step)) for food in kinds])
-    most = np.array([food.capacity * float(factor_at(food.schedule, "capacity", step)) for food in kinds])
-    stock = np.maximum(np.minimum(foods.stock + _STRIDE * growth, most), np.minimum(foods.stock, foods.present))
+    capacity = np.array([food.capacity * float(factor_at(food.schedule, "capacity", step)) for food in kinds])
+    stock = np.maximum(np.minimum(foods.stock + _STRIDE * growth, capacity), np.minimum(foods.stock, foods.present))
     limit = _limits(kinds, ground, foods.eaten)
-    full = np.divide(foods.present, limit, out=np.ones(len(limit)), where=limit > 0)
+    fullness = np.divide(foods.present, limit, out=np.ones(len(limit)), where=limit > 0)
     roomy = limit >= [food.capacity for food in kinds]
-    free = (1.0 - covered) * np.where(roomy, 1.0, np.clip(1.0 - full, 0.0, 1.0) ** 2)
+    free = (1.0 - covered) * np.where(roomy, 1.0, np.clip(1.0 - fullness, 0.0, 1.0) ** 2)
     tries = _STRIDE * np.array([food.candidates for food in kinds]) * [places.share for places in ground.places]
     added = np.minimum(np.maximum(np.minimum(np.floor(stock + 1e-9), limit) - foods.present, 0.0), tries * free)
     eaten = (foods.present + 0.5 * added) * -np.expm1(-_STRIDE * rate)
     return _Foods(stock - eaten, foods.present + added - eaten, foods.eaten + eaten)
 
 
-def _live(own: SpeciesConfig, cohorts: Floats, i: int, held: float, gained: float, success: Floats) -> float:
+def _live(
+    species: SpeciesConfig, cohorts: Floats, i: int, total_energy: float, energy_gained: float, success: Floats
+) -> float:
     """Lets agents pay, die and breed for `_STRIDE` steps; changes the cohorts and returns the total energy held."""
     alive = float(cohorts.sum())
     if alive < 1e-6:
         return 0.0
-    energy = held / alive
-    held = max(held + gained - _STRIDE * alive * (need(own) + own.energy.decay * energy), 0.0)
-    if own.energy.at_zero == "death" and held == 0.0:
-        cohorts *= min(gained / (_STRIDE * alive * need(own)), 1.0) if need(own) > 0 else 1.0
-    death = scaled_hazard(hazard_of(own), float(factor_at(own.hazard.schedule, "scale", i * _STRIDE)))
+    energy = total_energy / alive
+    total_energy = max(
+        total_energy + energy_gained - _STRIDE * alive * (need(species) + species.energy.decay * energy), 0.0
+    )
+    if species.energy.at_zero == "death" and total_energy == 0.0:
+        cohorts *= min(energy_gained / (_STRIDE * alive * need(species)), 1.0) if need(species) > 0 else 1.0
+    death = scaled_hazard(hazard_of(species), float(factor_at(species.hazard.schedule, "scale", i * _STRIDE)))
     survivors = math.exp(-_STRIDE * min(max(float(hazard(death, 0.0, energy)), 0.0), 1.0))
-    pairs = 0.5 if own.birth.mating == "pairs" else 1.0
-    placed = float(np.interp(alive, np.arange(len(success)), success))
-    children = pairs * _STRIDE * alive * float(birth_rate(birth_of(own), energy)) * placed
+    pairs = 0.5 if species.birth.mating == "pairs" else 1.0
+    success_share = float(np.interp(alive, np.arange(len(success)), success))
+    children = pairs * _STRIDE * alive * float(birth_rate(birth_of(species), energy)) * success_share
     cohorts *= survivors
-    cohorts[i + 1] = min(children, max(own.population.capacity - float(cohorts.sum()), 0.0))
-    return min(held * survivors, float(cohorts.sum()) * own.energy.capacity)
+    cohorts[i + 1] = min(children, max(species.population.capacity - float(cohorts.sum()), 0.0))
+    return min(total_energy * survivors, float(cohorts.sum()) * species.energy.capacity)

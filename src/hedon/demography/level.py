@@ -40,15 +40,15 @@ class Room:
 
 def levels_of(own: SpeciesConfig, places: tuple[Room, ...]) -> tuple[EnergyLevel, ...]:
     """Lives at some energies up to the capacity."""
-    most = own.energy.capacity
-    energies = [*(energy for energy in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if energy < most), most]
+    capacity = own.energy.capacity
+    energies = [*(energy for energy in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if energy < capacity), capacity]
     return tuple(_level(own, energy, places) for energy in energies)
 
 
-def _level(own: SpeciesConfig, energy: float, places: tuple[Room, ...]) -> EnergyLevel:
-    hazard = mean_hazard(own)
+def _level(species: SpeciesConfig, energy: float, places: tuple[Room, ...]) -> EnergyLevel:
+    hazard = mean_hazard(species)
     lifetime = float(expected_lifetime(hazard, energy))
-    r0 = float(reproduction_number(hazard, birth_of(own), energy)) if own.birth.kappa else 0.0
+    r0 = float(reproduction_number(hazard, birth_of(species), energy)) if species.birth.kappa else 0.0
     refusal = max(1.0 - 1.0 / r0, 0.0) if r0 > 0 else 0.0
     population = _alive_at(1.0 / r0, places) if r0 > 1 and places else math.nan
     return EnergyLevel(energy, lifetime, r0, refusal, population)

@@ -103,11 +103,11 @@ def expected_lifetime(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.
         form for a hazard that does not rise with age; else by Gauss–Legendre quadrature, with a relative error below
         1e-10.
     """
-    flat = energy_hazard(config, energy)
+    base_hazard = energy_hazard(config, energy)
     if _alpha_age(config) == 0 or config.beta_age == 0:
         with np.errstate(divide="ignore"):
-            return 1.0 / (flat + _alpha_age(config))
-    return _integrated_survival(config, energy, _oldest(config, flat))
+            return 1.0 / (base_hazard + _alpha_age(config))
+    return _integrated_survival(config, energy, _oldest(config, base_hazard))
 
 
 def generation_time(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.float64]":
@@ -123,11 +123,11 @@ def generation_time(config: HazardConfig, energy: "ArrayLike") -> "NDArray[np.fl
     Returns:
         ∫ a·S(a) da / ∫ S(a) da with `survival` S [step], of the shape of `energy`; infinite if nothing kills.
     """
-    flat = energy_hazard(config, energy)
+    base_hazard = energy_hazard(config, energy)
     lifetime = expected_lifetime(config, energy)
     if _alpha_age(config) == 0 or config.beta_age == 0:
         return lifetime
-    return _integrated_survival(config, energy, _oldest(config, flat), power=1) / lifetime
+    return _integrated_survival(config, energy, _oldest(config, base_hazard), power=1) / lifetime
 
 
 def reproduction_number(
@@ -152,10 +152,10 @@ def _alpha_age(config: HazardConfig) -> float:
     return config.alpha_age if HAZARD_FORMS[config.form][1] else 0.0
 
 
-def _oldest(config: HazardConfig, flat: "NDArray[np.float64]") -> "NDArray[np.float64]":
+def _oldest(config: HazardConfig, base_hazard: "NDArray[np.float64]") -> "NDArray[np.float64]":
     """An age [step] by which the cumulative hazard has passed its limit but not twice the limit; infinite if never."""
     with np.errstate(divide="ignore"):
-        by_energy = _MAX_CUMULATIVE_HAZARD / flat
+        by_energy = _MAX_CUMULATIVE_HAZARD / base_hazard
         by_age = np.float64(_MAX_CUMULATIVE_HAZARD) / _alpha_age(config)
     if config.beta_age > 0:
         by_age = np.log1p(config.beta_age * by_age) / config.beta_age
@@ -163,10 +163,10 @@ def _oldest(config: HazardConfig, flat: "NDArray[np.float64]") -> "NDArray[np.fl
 
 
 def _integrated_survival(
-    config: HazardConfig, energy: "ArrayLike", until: "NDArray[np.float64]", power: int = 0
+    config: HazardConfig, energy: "ArrayLike", end_age: "NDArray[np.float64]", power: int = 0
 ) -> "NDArray[np.float64]":
     """Integral of a power of age times `survival`, from 0 to an age [step]."""
-    half = 0.5 * until[..., None]
+    half = 0.5 * end_age[..., None]
     energy = np.asarray(energy, dtype=np.float64)[..., None]
     age = half * (_NODES + 1.0)
     return np.sum(_WEIGHTS * half * age**power * survival(config, age, energy), axis=-1)

@@ -52,25 +52,27 @@ def unlearned_walk(
     lever = radius * math.sin(math.radians(motor.angle)) / (0.5 * mass * radius**2)
     low, high = (motor.force_scale * force for force in (motor.min_force, motor.max_force))
     slowing, turning = (math.exp(-rate * physics.dt) for rate in (physics.linear_damping, physics.angular_damping))
-    path, turn = (physics.dt * sum(rest**i for i in range(physics.substeps)) for rest in (slowing, turning))
-    slowed, turned = slowing ** (physics.substeps - 1), turning ** (physics.substeps - 1)
-    count, top = len(place), physics.max_speed
+    path, turn = (physics.dt * sum(damping**i for i in range(physics.substeps)) for damping in (slowing, turning))
+    linear_decay, angular_decay = slowing ** (physics.substeps - 1), turning ** (physics.substeps - 1)
+    count, max_speed = len(place), physics.max_speed
     place, velocity, spin = place.copy(), np.zeros(count, np.complex128), np.zeros(count)
     angle = own.population.heading_range * rng.random(count)
     boundary = _Boundary(config, radius)
-    rests = own.learning.policy == "idle"
+    is_idle = own.learning.policy == "idle"
     for _ in range(steps):
-        force = low + (high - low) / (1.0 + np.exp(-rng.normal(size=(2, count)))) if not rests else np.zeros((2, count))
+        force = (
+            low + (high - low) / (1.0 + np.exp(-rng.normal(size=(2, count)))) if not is_idle else np.zeros((2, count))
+        )
         velocity += 1j * np.exp(1j * angle) * ((force[0] + force[1]) * (physics.dt / mass))
         velocity *= slowing
-        velocity = np.clip(velocity.real, -top, top) + 1j * np.clip(velocity.imag, -top, top)
+        velocity = np.clip(velocity.real, -max_speed, max_speed) + 1j * np.clip(velocity.imag, -max_speed, max_speed)
         spin = (spin + (force[1] - force[0]) * (lever * physics.dt)) * turning
         spin = np.clip(spin, -physics.max_angular_speed, physics.max_angular_speed)
         place += path * velocity
         boundary.stop(place, velocity, spin)
         angle += turn * spin
-        velocity *= slowed
-        spin *= turned
+        velocity *= linear_decay
+        spin *= angular_decay
         yield place, 1j * np.exp(1j * angle)
 
 
@@ -92,25 +94,32 @@ class _Boundary:
         gap = np.outer(place.real, self.inward.real) + np.outer(place.imag, self.inward.imag) - self.offset
         deepest = gap.argmin(axis=1)  # the other wall of a corner follows in the next step
         depth = -gap[np.arange(len(place)), deepest]
-        at = np.flatnonzero(depth >= 0)
-        self._meet(at, self.inward[deepest[at]], depth[at], place, velocity, spin)
+        indices = np.flatnonzero(depth >= 0)
+        self._meet(indices, self.inward[deepest[indices]], depth[indices], place, velocity, spin)
         for start, span in self.segments:
             share = ((place - start) * span.conjugate()).real / max(abs(span) ** 2, 1e-12)
-            apart = place - start - np.clip(share, 0.0, 1.0) * span
-            distance = np.abs(apart)
-            at = np.flatnonzero(distance <= self.radius)
+            separation = place - start - np.clip(share, 0.0, 1.0) * span
+            distance = np.abs(separation)
+            indices = np.flatnonzero(distance <= self.radius)
             self._meet(
-                at, apart[at] / np.maximum(distance[at], 1e-12), self.radius - distance[at], place, velocity, spin
+                indices,
+                separation[indices] / np.maximum(distance[indices], 1e-12),
+                self.radius - distance[indices],
+                place,
+                velocity,
+                spin,
             )
 
     def _meet(
-        self, at: NDArray[np.intp], normal: Points, depth: Floats, place: Points, velocity: Points, spin: Floats
+        self, indices: NDArray[np.intp], normal: Points, depth: Floats, place: Points, velocity: Points, spin: Floats
     ) -> None:
         """Contact of some bodies with a wall, with normals that point away from it."""
-        place[at] += depth * normal
-        speed = velocity[at] * normal.conj()  # along the normal and along the wall
-        into = np.minimum(speed.real, 0.0)
-        slide = speed.imag - self.radius * spin[at]
-        grip = np.clip(-slide / 3.0, self.friction * into, -self.friction * into)  # for a disc: 1/(1 + m r²/I) = 1/3
-        velocity[at] += (-into + 1j * grip) * normal
-        spin[at] -= 2.0 * grip / self.radius
+        place[indices] += depth * normal
+        speed = velocity[indices] * normal.conj()  # along the normal and along the wall
+        approach_speed = np.minimum(speed.real, 0.0)
+        slide = speed.imag - self.radius * spin[indices]
+        grip = np.clip(
+            -slide / 3.0, self.friction * approach_speed, -self.friction * approach_speed
+        )  # for a disc: 1/(1 + m r²/I) = 1/3
+        velocity[indices] += (-approach_speed + 1j * grip) * normal
+        spin[indices] -= 2.0 * grip / self.radius

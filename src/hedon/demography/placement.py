@@ -48,9 +48,9 @@ def is_free(config: Config, radius: float, places: Floats, agents: Floats, foods
         foods: Centers of the foods present [u], shape (f, 2).
     """
     free = is_within_walls(config, radius, places)
-    for others, reach in ((agents, 2 * radius), (foods, radius + config.world.food_radius)):
-        if len(others):
-            nearest, _ = spatial.KDTree(others).query(places[free], distance_upper_bound=reach)
+    for occupied, reach in ((agents, 2 * radius), (foods, radius + config.world.food_radius)):
+        if len(occupied):
+            nearest, _ = spatial.KDTree(occupied).query(places[free], distance_upper_bound=reach)
             free[free] = np.isinf(nearest)
     return free
 
@@ -59,13 +59,17 @@ def _scene_success(config: Config, species: str, sizes: Sequence[int], rng: np.r
     """Fills one scene, and returns the share of successful births at each size."""
     size = np.array([config.arena.width, config.arena.height])
     foods = rng.uniform(0, 1, (sum(food.initial_count for food in config.food.values()), 2)) * size
-    own = config.species[species]
-    radius, attempts, sd = own.body.radius, own.birth.attempts, distance_sd(config.arena, own.birth)
+    species_config = config.species[species]
+    radius, attempts, sd = (
+        species_config.body.radius,
+        species_config.birth.attempts,
+        distance_sd(config.arena, species_config.birth),
+    )
     agents, shares = np.empty((0, 2)), []
     for count in sizes:
         agents = _fill(config, radius, agents, foods, count, size, rng)
-        tried = agents[:, None] + sd * rng.normal(size=(len(agents), attempts, 2))
-        free = is_free(config, radius, tried.reshape(-1, 2), agents, foods).reshape(-1, attempts)
+        candidates = agents[:, None] + sd * rng.normal(size=(len(agents), attempts, 2))
+        free = is_free(config, radius, candidates.reshape(-1, 2), agents, foods).reshape(-1, attempts)
         shares.append(float(free.any(axis=1).mean()) if len(agents) else 0.0)
     return shares
 
@@ -79,11 +83,11 @@ def _fill(
             break
         places = rng.uniform(0, 1, (min(_BATCH, 2 * (count - len(agents))), 2)) * size
         places = places[is_free(config, radius, places, agents, foods)]
-        near = np.linalg.norm(places[:, None] - places[None], axis=2) < 2 * radius
-        taken = np.zeros(len(places), bool)
+        overlaps = np.linalg.norm(places[:, None] - places[None], axis=2) < 2 * radius
+        accepted = np.zeros(len(places), bool)
         for i in range(len(places)):
-            taken[i] = not (near[i] & taken).any()
-        agents = np.vstack([agents, places[taken][: count - len(agents)]])
+            accepted[i] = not (overlaps[i] & accepted).any()
+        agents = np.vstack([agents, places[accepted][: count - len(agents)]])
     return agents
 
 
@@ -115,4 +119,8 @@ def _walls(arena: ArenaConfig) -> tuple[Floats, Floats, list[tuple[Floats, Float
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     inward = np.array([along[:, 1], -along[:, 0]])  # the inside is to the right
     ends = walls(arena)[len(corners) :].astype(np.float64)
-    return inward, np.einsum("ni,in->n", corners, inward), [(each[:2], each[2:] - each[:2]) for each in ends]
+    return (
+        inward,
+        np.einsum("ni,in->n", corners, inward),
+        [(segment[:2], segment[2:] - segment[:2]) for segment in ends],
+    )

@@ -23,13 +23,13 @@ def factor_at(schedules: Mapping[str, ScheduleConfig], name: str, step: ArrayLik
     schedule = schedules.get(name)
     if schedule is None or not schedule.points:
         return np.ones(time.shape)
-    at, factor = np.array(schedule.points, np.float64).T
+    times, factor = np.array(schedule.points, np.float64).T
     period = schedule.period
     if period:
-        at, factor, time = np.concatenate([at - period, at, at + period]), np.tile(factor, 3), time % period
+        times, factor, time = np.concatenate([times - period, times, times + period]), np.tile(factor, 3), time % period
     if schedule.form == "linear":
-        return np.interp(time, at, factor)
-    return factor[np.clip(np.searchsorted(at, time, side="right") - 1, 0, None)]
+        return np.interp(time, times, factor)
+    return factor[np.clip(np.searchsorted(times, time, side="right") - 1, 0, None)]
 
 
 def mean_factor(schedules: Mapping[str, ScheduleConfig], name: str) -> float:
@@ -59,9 +59,9 @@ def hazard_of(own: SpeciesConfig) -> HazardConfig:
 
 def birth_of(own: SpeciesConfig) -> BirthConfig:
     """Probability of a child by energy, for agents with the best levels of all other stores: full or empty."""
-    others = sum(max(store.birth_weight, 0.0) * store.capacity for store in own.store.values())
+    store_weight = sum(max(store.birth_weight, 0.0) * store.capacity for store in own.store.values())
     beta, offset = own.birth.beta, own.birth.logit_offset
-    return replace(own.birth, beta=own.energy.birth_weight * beta, logit_offset=offset - beta * others)
+    return replace(own.birth, beta=own.energy.birth_weight * beta, logit_offset=offset - beta * store_weight)
 
 
 def mean_hazard(own: SpeciesConfig) -> HazardConfig:
