@@ -47,18 +47,18 @@ def answered(others: Policy, group: Group) -> NDArray[Any]:
     """A policy's actions for all agents, (worlds, slots, 2). Raises ArgumentError if they form no table of actions."""
     shape = group.actions.shape
     answer = others(group.observations.reshape(-1, len(group.columns)))
-    given = np.asarray(answer)
+    actions = np.asarray(answer)
     table = (shape[0] * shape[1], shape[2])
-    if given.shape != table or given.dtype.kind not in "fiu":
-        said = f"{given.shape} {given.dtype}" if given.ndim else brief(repr(answer))
-        raise ArgumentError(f"others: must return numbers of shape {table}, not {said}")
-    given = given.reshape(shape)
-    wrong = group.alive[..., None] & ~((given >= group.low) & (given <= group.high))
-    if wrong.any():
-        world, slot, motor = np.argwhere(wrong)[0]
-        place = f"others: returned [{world * shape[1] + slot}, {motor}] = {given[world, slot, motor]}"
+    if actions.shape != table or actions.dtype.kind not in "fiu":
+        description = f"{actions.shape} {actions.dtype}" if actions.ndim else brief(repr(answer))
+        raise ArgumentError(f"others: must return numbers of shape {table}, not {description}")
+    actions = actions.reshape(shape)
+    is_invalid = group.alive[..., None] & ~((actions >= group.low) & (actions <= group.high))
+    if is_invalid.any():
+        world, slot, motor = np.argwhere(is_invalid)[0]
+        place = f"others: returned [{world * shape[1] + slot}, {motor}] = {actions[world, slot, motor]}"
         raise ArgumentError(f"{place}: must be from {group.low:g} to {group.high:g}")
-    return given.astype(np.float32)
+    return actions.astype(np.float32)
 
 
 class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
@@ -163,20 +163,20 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         group, slot = self._group, self._slot
         if slot < 0:
             raise ArgumentError("step: there is no agent: call reset first")
-        given = np.asarray(action)
-        if given.shape != (2,) or given.dtype.kind not in "fiu":
+        values = np.asarray(action)
+        if values.shape != (2,) or values.dtype.kind not in "fiu":
             raise ArgumentError("action: must be two numbers, left and right")
         # Copied so that a refused action leaves no trace.
         actions = group.actions.copy() if self._others is None else answered(self._others, group)
-        actions[0, slot] = given
+        actions[0, slot] = values
         self._vector.step(actions)
-        died = bool(group.terminated[0, slot])
-        seen = np.zeros(len(group.columns), np.float32) if died else self._seen()
-        cut = bool(group.truncated[0, slot]) and not died
-        told = seen, float(group.rewards[0, slot]), died, cut, self._info()
-        if died:
+        terminated = bool(group.terminated[0, slot])
+        observation = np.zeros(len(group.columns), np.float32) if terminated else self._seen()
+        truncated = bool(group.truncated[0, slot]) and not terminated
+        result = observation, float(group.rewards[0, slot]), terminated, truncated, self._info()
+        if terminated:
             self._slot = -1
-        return told
+        return result
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_group"}

@@ -117,23 +117,23 @@ class AgentVectorEnv(WorldsVectorEnv):
         """
         if self._slots[0] < 0:
             raise ArgumentError("step: there are no agents: call reset first")
-        given = np.asarray(actions)
-        if given.shape != (self.num_envs, 2) or given.dtype.kind not in "fiu":
-            raise ArgumentError(f"actions: must be numbers of shape {(self.num_envs, 2)}, not {given.shape}")
-        every = self.group.actions.copy() if self._others is None else answered(self._others, self.group)
+        values = np.asarray(actions)
+        if values.shape != (self.num_envs, 2) or values.dtype.kind not in "fiu":
+            raise ArgumentError(f"actions: must be numbers of shape {(self.num_envs, 2)}, not {values.shape}")
+        all_actions = self.group.actions.copy() if self._others is None else answered(self._others, self.group)
         rows = (np.arange(self.num_envs), self._slots)
-        every[rows] = given
-        self.worlds.step(every)
-        begins = self._over
-        if begins.any():
-            self.worlds.reset(options={RESET_MASK: begins})
-            self._choose(begins)
+        all_actions[rows] = values
+        self.worlds.step(all_actions)
+        restarting = self._over
+        if restarting.any():
+            self.worlds.reset(options={RESET_MASK: restarting})
+            self._choose(restarting)
             rows = (rows[0], self._slots)
-        rewards = np.where(begins, np.float32(0), self.group.rewards[rows])
-        died = ~begins & self.group.terminated[rows]
-        cut = ~begins & ~died & self.group.truncated[rows]
-        self._over = died | cut
-        return np.where(died[:, None], np.float32(0), self._seen()), rewards, died, cut, self._infos()
+        rewards = np.where(restarting, np.float32(0), self.group.rewards[rows])
+        terminated = ~restarting & self.group.terminated[rows]
+        truncated = ~restarting & ~terminated & self.group.truncated[rows]
+        self._over = terminated | truncated
+        return np.where(terminated[:, None], np.float32(0), self._seen()), rewards, terminated, truncated, self._infos()
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "group"}
@@ -142,8 +142,8 @@ class AgentVectorEnv(WorldsVectorEnv):
         self.__dict__.update(state)
         self.group = one_group(self.worlds)
 
-    def _choose(self, begins: NDArray[np.bool_]) -> None:
-        for world in np.flatnonzero(begins).tolist():
+    def _choose(self, restarting: NDArray[np.bool_]) -> None:
+        for world in np.flatnonzero(restarting).tolist():
             self._slots[world] = first_founder(self.group, world)
 
     def _seen(self) -> Floats:

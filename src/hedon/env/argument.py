@@ -46,21 +46,21 @@ def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ..
         raise ArgumentError(
             f"config: must be a Config, as load_config gives it, a preset or a file, not {brief(repr(config))}"
         )
-    known = list(config.species)
+    names = list(config.species)
     if species is None:
-        return config.driven or tuple(known)
+        return config.driven or tuple(names)
     if not isinstance(species, str | Iterable):
         raise ArgumentError(f"species: must be a name, or a list of them, not {brief(repr(species))}")
-    wanted = [species] if isinstance(species, str) else list(species)
-    for name in wanted:
-        if name not in known:
-            near = nearest(name, known) if isinstance(name, str) else None
-            hint = f"; did you mean {near}?" if near else ""
-            there = ", ".join(known)
-            raise ArgumentError(f"species {brief(str(name))!r}: there is no such species (there are {there}){hint}")
-    if not wanted or len(set(wanted)) < len(wanted):
-        raise ArgumentError(f"species = {brief(repr(wanted))}: must be at least one name, and each of them once")
-    return tuple(name for name in known if name in wanted)
+    requested = [species] if isinstance(species, str) else list(species)
+    for name in requested:
+        if name not in names:
+            suggestion = nearest(name, names) if isinstance(name, str) else None
+            hint = f"; did you mean {suggestion}?" if suggestion else ""
+            listing = ", ".join(names)
+            raise ArgumentError(f"species {brief(str(name))!r}: there is no such species (there are {listing}){hint}")
+    if not requested or len(set(requested)) < len(requested):
+        raise ArgumentError(f"species = {brief(repr(requested))}: must be at least one name, and each of them once")
+    return tuple(name for name in names if name in requested)
 
 
 def with_callers(config: Config, names: Sequence[str]) -> Config:
@@ -106,8 +106,8 @@ def chosen(name: str, value: Any, known: Sequence[Any], *, empty: bool = False) 
     """
     if (empty and value is None) or (isinstance(value, str) and value in known):
         return value
-    near = nearest(value, known) if isinstance(value, str) else None
-    hint = f"; did you mean {near}?" if near else ""
+    suggestion = nearest(value, known) if isinstance(value, str) else None
+    hint = f"; did you mean {suggestion}?" if suggestion else ""
     raise ArgumentError(f"{name} = {brief(repr(value))}: must be {' or '.join(known)}{hint}")
 
 
@@ -117,10 +117,10 @@ def reset_mask(options: Any, worlds: int) -> NDArray[np.bool_]:
     Raises:
         ArgumentError: An option is unknown, or the mask is invalid.
     """
-    given = options_of(options)
-    mask = np.asarray(given.pop(RESET_MASK, np.ones(worlds, np.bool_)))
-    if given:
-        unknown = next(iter(given))
+    remaining = options_of(options)
+    mask = np.asarray(remaining.pop(RESET_MASK, np.ones(worlds, np.bool_)))
+    if remaining:
+        unknown = next(iter(remaining))
         raise ArgumentError(f"options: there is no {brief(str(unknown))!r}; there is {RESET_MASK!r}")
     if mask.shape != (worlds,) or mask.dtype != np.bool_ or not mask.any():
         raise ArgumentError(f"options[{RESET_MASK!r}]: must be ({worlds},) bool, true for at least one world")
@@ -136,8 +136,8 @@ def recordable(
         ArgumentError: `frames` is given without `record`.
         RuleError: A rule cannot be used.
     """
-    found = rules(config) if record is not None else ()
+    config_rules = rules(config) if record is not None else ()
     if record is None and frames:
         raise ArgumentError(f"frames = {brief(repr(frames))}: give record, the folder for them, too")
-    texts = tuple(rule.source for rule in found)
-    return Simulation(pinned(config, found) if found else config, seeds, threads, backend, texts)
+    texts = tuple(rule.source for rule in config_rules)
+    return Simulation(pinned(config, config_rules) if config_rules else config, seeds, threads, backend, texts)

@@ -31,10 +31,10 @@ class Held:
         return self if group is None else group.__dict__[self._name]
 
     def __set__(self, group: Any, value: Any) -> None:
-        held = group.__dict__.setdefault(self._name, value)
-        if value is not held:  # `group.actions += 1` assigns the same array
+        array = group.__dict__.setdefault(self._name, value)
+        if value is not array:  # `group.actions += 1` assigns the same array
             raise ArgumentError(
-                f"{self._name}: must be the array of {held.shape} {held.dtype} that was there: write into it, "
+                f"{self._name}: must be the array of {array.shape} {array.dtype} that was there: write into it, "
                 f"{self._name}[...] = …"
             )
 
@@ -121,8 +121,10 @@ class Group:
         self.meals = np.zeros((worlds, len(meal_names)), np.int64)
         self._index, self._form = index, form
         # These are never replaced, so look them up once: steps of few agents are short.
-        every = [(name, getattr(self, name)) for name, held in vars(Group).items() if isinstance(held, Held)]
-        self._shared = {name: (array, array.shape, array.dtype) for name, array in every}
+        arrays = [
+            (name, getattr(self, name)) for name, descriptor in vars(Group).items() if isinstance(descriptor, Held)
+        ]
+        self._shared = {name: (array, array.shape, array.dtype) for name, array in arrays}
         self._derived = (self.ids, self.ids_before, self.alive, self.born, self.terminated)
         self._eaten = self.meals.copy()
         # Within a repeat: rewards of agents born in it, by slot, and rows of agents born and dead in it.
@@ -136,23 +138,23 @@ class Group:
         `reward` is the newborn's reward in the steps, 0 in the step of its birth; `alive`, whether it is alive now. A
         newborn that is not alive was born and died within a repeat; no other array shows it.
         """
-        here = np.nonzero(self.born)
-        rows = np.concatenate([self._gone, _rows(here, self.ids, self._late, alive=True)])
+        indices = np.nonzero(self.born)
+        rows = np.concatenate([self._gone, _rows(indices, self.ids, self._late, alive=True)])
         return rows[np.lexsort((rows["agent_id"], rows["world"]))]
 
-    def _take(self, given: Any) -> None:
+    def _take(self, actions: Any) -> None:
         """Copies actions into the group's array, unless they are that array."""
-        if given is self.actions:
+        if actions is self.actions:
             return
-        array = np.asarray(given)
+        array = np.asarray(actions)
         table = (self.ids.size, len(ACTIONS))
         if (
             array.dtype.kind not in "fiu"
             or array.shape not in (self.actions.shape, table)
-            or np.ma.isMaskedArray(given)
+            or np.ma.isMaskedArray(actions)
         ):
-            said = f"{array.shape} {array.dtype}" if array.ndim else brief(repr(given))
-            raise ArgumentError(f"actions: must be numbers of shape {self.actions.shape} or {table}, not {said}")
+            description = f"{array.shape} {array.dtype}" if array.ndim else brief(repr(actions))
+            raise ArgumentError(f"actions: must be numbers of shape {self.actions.shape} or {table}, not {description}")
         with np.errstate(over="ignore"):
             self.actions[...] = array.reshape(self.actions.shape)
 
@@ -163,11 +165,11 @@ class Group:
             if not (flags.c_contiguous and flags.writeable and array.shape == shape and array.dtype is kind):
                 raise ArgumentError(f"{name}: must be as it was made, writeable, contiguous, {kind} of shape {shape}")
 
-    def _tell(self, give: Any) -> None:
+    def _tell(self, method: Any) -> None:
         """Passes the actions to a method of the engine. Raises ArgumentError if it refuses one."""
-        bad = give(self._index, self.actions, self._form)
-        if bad >= 0:
-            world, slot, motor = (int(i) for i in np.unravel_index(bad, self.actions.shape))
+        index = method(self._index, self.actions, self._form)
+        if index >= 0:
+            world, slot, motor = (int(i) for i in np.unravel_index(index, self.actions.shape))
             place = f"actions[{world}, {slot}, {motor}] ({ACTIONS[motor]}) = {self.actions[world, slot, motor]}"
             rule = "a finite number" if self._form == "logit" else f"from {self.low:g} to {self.high:g}"
             raise ArgumentError(f"{place}: must be {rule}")
@@ -187,15 +189,15 @@ class Group:
         """Reads the state after one of several steps since `_begin`."""
         if first:
             self.rewards.fill(0)
-        acting, paid = self.ids.copy(), np.zeros_like(self.rewards)
+        acting, rewards = self.ids.copy(), np.zeros_like(self.rewards)
         if last:
-            engine.read_observations(self._index, self.observations, paid, self.ids)
+            engine.read_observations(self._index, self.observations, rewards, self.ids)
         else:
-            engine.read_rewards(self._index, paid, self.ids)
-        old = acting == self.ids_before
-        self.rewards[old] += paid[old]
-        self._late[~old] += paid[~old]
-        ended = ~old & (acting != NOBODY) & (acting != self.ids)
+            engine.read_rewards(self._index, rewards, self.ids)
+        is_original = acting == self.ids_before
+        self.rewards[is_original] += rewards[is_original]
+        self._late[~is_original] += rewards[~is_original]
+        ended = ~is_original & (acting != NOBODY) & (acting != self.ids)
         if ended.any():
             self._gone = np.concatenate([self._gone, _rows(np.nonzero(ended), acting, self._late, alive=False)])
             self._late[ended] = 0
@@ -205,11 +207,11 @@ class Group:
 
     def _finish(self, engine: Any, *, changed: bool) -> None:
         """Derives arrays from the ids now and before the steps; some of them differ if `changed`."""
-        ids, before, alive, born, terminated = self._derived
+        ids, ids_before, alive, born, terminated = self._derived
         np.not_equal(ids, NOBODY, out=alive)
         if changed:
-            np.not_equal(ids, before, out=born)
-            np.logical_and(born, before != NOBODY, out=terminated)
+            np.not_equal(ids, ids_before, out=born)
+            np.logical_and(born, ids_before != NOBODY, out=terminated)
             born &= alive
             born.sum(axis=1, out=self.births)
             terminated.sum(axis=1, out=self.deaths)
@@ -220,9 +222,9 @@ class Group:
             self.births.fill(0)
             self.deaths.fill(0)
         if len(self._gone):
-            short = np.bincount(self._gone["world"], minlength=len(ids))
-            self.births += short
-            self.deaths += short
+            short_lived = np.bincount(self._gone["world"], minlength=len(ids))
+            self.births += short_lived
+            self.deaths += short_lived
         eaten = engine.meals(self._index)
         np.subtract(eaten, self._eaten, out=self.meals)
         self._eaten[...] = eaten
@@ -265,12 +267,12 @@ def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
     Raises:
         ArgumentError: An action is invalid.
     """
-    given = _by_species(groups, actions)
+    action_arrays = _by_species(groups, actions)
     for group in groups.values():
         group._check()
-    held = [(group, group.actions.copy()) for group, array in given if array is not group.actions]
+    backups = [(group, group.actions.copy()) for group, array in action_arrays if array is not group.actions]
     try:
-        for group, array in given:
+        for group, array in action_arrays:
             group._take(array)
         if len(groups) > 1:  # set nothing before the actions of all species are valid
             for group in groups.values():
@@ -278,19 +280,19 @@ def act(engine: Any, groups: Mapping[str, Group], actions: Any) -> None:
         for group in groups.values():
             group._tell(engine.set_actions)
     except ArgumentError:
-        for group, before in held:
-            group.actions[...] = before
+        for group, backup in backups:
+            group.actions[...] = backup
         raise
 
 
 def _by_species(groups: Mapping[str, Group], actions: Any) -> list[tuple[Group, Any]]:
     if len(groups) == 1:
         return [(next(iter(groups.values())), actions)]
-    there = ", ".join(groups)
+    listing = ", ".join(groups)
     if not isinstance(actions, Mapping):
-        raise ArgumentError(f"actions: must be a dict of arrays by species ({there}), not {type(actions).__name__}")
+        raise ArgumentError(f"actions: must be a dict of arrays by species ({listing}), not {type(actions).__name__}")
     if unknown := [name for name in actions if name not in groups]:
-        raise ArgumentError(f"actions[{brief(repr(unknown[0]))}]: no such species is driven (there are {there})")
+        raise ArgumentError(f"actions[{brief(repr(unknown[0]))}]: no such species is driven (there are {listing})")
     return [(groups[name], array) for name, array in actions.items()]
 
 
@@ -302,11 +304,11 @@ def _bounds(motor: MotorConfig, form: Form) -> tuple[float, float]:
     return (motor.min_force, motor.max_force) if form == "force" else (-largest, largest)
 
 
-def _rows(where: tuple[NDArray[Any], ...], ids: NDArray[Any], rewards: NDArray[Any], *, alive: bool) -> NDArray[Any]:
+def _rows(indices: tuple[NDArray[Any], ...], ids: NDArray[Any], rewards: NDArray[Any], *, alive: bool) -> NDArray[Any]:
     """Rows of `Group.newborns` for these worlds and slots."""
-    rows = np.zeros(len(where[0]), NEWBORN)
-    rows["world"], rows["slot"] = where
-    rows["agent_id"] = ids[where]
-    rows["reward"] = rewards[where]
+    rows = np.zeros(len(indices[0]), NEWBORN)
+    rows["world"], rows["slot"] = indices
+    rows["agent_id"] = ids[indices]
+    rows["reward"] = rewards[indices]
     rows["alive"] = alive
     return rows

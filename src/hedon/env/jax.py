@@ -183,11 +183,11 @@ class JaxEnv(Copied):
         Returns:
             The observations (slots, entries) float32, zeros in empty slots, and the state.
         """
-        nobody = jnp.full((self.slots,), NOBODY, jnp.int32)
-        before = State(jnp.int32(0), jnp.uint32(0), nobody)
-        still = jnp.zeros((self.slots, len(ACTIONS)), jnp.float32)
-        state, (seen, *_) = self._call(key, before, still, params, begins=True)
-        return seen, state
+        no_ids = jnp.full((self.slots,), NOBODY, jnp.int32)
+        empty_state = State(jnp.int32(0), jnp.uint32(0), no_ids)
+        no_action = jnp.zeros((self.slots, len(ACTIONS)), jnp.float32)
+        state, (observation, *_) = self._call(key, empty_state, no_action, params, begins=True)
+        return observation, state
 
     def step(
         self, key: jax.Array, state: State, action: jax.Array, params: JaxParams | None = None
@@ -207,8 +207,10 @@ class JaxEnv(Copied):
 
             An invalid action or a stale state raises a JAX error when the program runs.
         """
-        state, (seen, paid, died, done) = self._call(key, state, jnp.asarray(action, jnp.float32), params, begins=False)
-        return seen, state, paid, done, {"terminated": died, "alive": state.agent_id != NOBODY}
+        state, (observation, reward, terminated, done) = self._call(
+            key, state, jnp.asarray(action, jnp.float32), params, begins=False
+        )
+        return observation, state, reward, done, {"terminated": terminated, "alive": state.agent_id != NOBODY}
 
     def _call(
         self, key: jax.Array, state: State, action: jax.Array, params: JaxParams | None, *, begins: bool
@@ -238,8 +240,8 @@ class JaxEnv(Copied):
         step = jax.ffi.ffi_call(TARGET, results, has_side_effect=True, vmap_method="broadcast_all")
         seed = jax.random.key_data(key).astype(jnp.uint32)[-2:]
         given = (state.world, state.turn, seed, state.agent_id, action, limit.astype(jnp.int32))
-        world, turn, ids, *rest = step(*given, call=call)
-        return State(world, turn, ids), rest
+        world, turn, ids, *outputs = step(*given, call=call)
+        return State(world, turn, ids), outputs
 
 
 @cache
@@ -251,24 +253,24 @@ def _register() -> None:
 
 def _library() -> Path:
     """Path of the compiled call, which the first use builds in the user's cache."""
-    said = f"{SOURCE.read_text()} {version('jaxlib')}"
-    digest = hashlib.sha256(said.encode()).hexdigest()[:16]
+    contents = f"{SOURCE.read_text()} {version('jaxlib')}"
+    digest = hashlib.sha256(contents.encode()).hexdigest()[:16]
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "hedon"
     library = folder / f"xla-{digest}.so"
     if library.is_file():
         return library
-    compiler = os.environ.get("CXX") or next((each for each in ("c++", "g++", "clang++") if shutil.which(each)), None)
+    compiler = os.environ.get("CXX") or next((name for name in ("c++", "g++", "clang++") if shutil.which(name)), None)
     if compiler is None:
         raise HedonError("hedon.env.JaxEnv needs a C++ compiler on first use, and finds none: install g++, or set CXX")
     try:
         print("hedon: compiling the call of JAX, once for this jaxlib (some seconds)", file=sys.stderr)
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as place:
-            made = Path(place) / library.name
+            built = Path(place) / library.name
             words = [*compiler.split(), "-std=c++17", "-O2", "-shared", "-fPIC", f"-I{jax.ffi.include_dir()}"]
-            subprocess.run([*words, str(SOURCE), "-o", str(made)], check=True, capture_output=True, text=True)
-            made.replace(library)
+            subprocess.run([*words, str(SOURCE), "-o", str(built)], check=True, capture_output=True, text=True)
+            built.replace(library)
     except (OSError, subprocess.CalledProcessError) as error:
-        why = (getattr(error, "stderr", None) or str(error)).strip().splitlines()
-        raise HedonError(f"hedon.env.JaxEnv cannot compile {SOURCE}: {why[0] if why else error}") from error
+        lines = (getattr(error, "stderr", None) or str(error)).strip().splitlines()
+        raise HedonError(f"hedon.env.JaxEnv cannot compile {SOURCE}: {lines[0] if lines else error}") from error
     return library

@@ -50,22 +50,22 @@ class JaxLog:
 
     def reset(self, key: jax.Array, params: JaxParams | None = None) -> tuple[jax.Array, LogState]:
         """As `JaxEnv.reset`, with total rewards and lengths set to 0."""
-        seen, state = self.env.reset(key, params)
+        observation, state = self.env.reset(key, params)
         slots = state.agent_id.shape
-        return seen, LogState(state, jnp.zeros(slots, jnp.float32), jnp.zeros(slots, jnp.int32))
+        return observation, LogState(state, jnp.zeros(slots, jnp.float32), jnp.zeros(slots, jnp.int32))
 
     def step(
         self, key: jax.Array, state: LogState, action: jax.Array, params: JaxParams | None = None
     ) -> tuple[jax.Array, LogState, jax.Array, jax.Array, dict[str, jax.Array]]:
         """As `JaxEnv.step`, with ended lives in its infos."""
-        seen, after, paid, done, info = self.env.step(key, state.env_state, action, params)
-        there = state.env_state.agent_id != NOBODY
-        total, length = state.paid + paid, state.lived + there
-        ended = there & (info["terminated"] | done)
-        told = {
+        observation, env_state, paid, done, info = self.env.step(key, state.env_state, action, params)
+        was_alive = state.env_state.agent_id != NOBODY
+        total, length = state.paid + paid, state.lived + was_alive
+        ended = was_alive & (info["terminated"] | done)
+        episode_info = {
             "returned_episode": ended,
             "returned_episode_returns": jnp.where(ended, total, 0.0),
             "returned_episode_lengths": jnp.where(ended, length, 0),
         }
-        kept = LogState(after, jnp.where(ended, 0.0, total), jnp.where(ended, 0, length))
-        return seen, kept, paid, done, info | told
+        log_state = LogState(env_state, jnp.where(ended, 0.0, total), jnp.where(ended, 0, length))
+        return observation, log_state, paid, done, info | episode_info

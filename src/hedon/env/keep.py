@@ -39,22 +39,22 @@ def arrays_in(text: bytes, about: dict[str, Any], like: Arrays) -> Arrays:
     Raises:
         ArgumentError: The bytes are anything else.
     """
-    head, _, rest = text.partition(b"\n")
+    head, _, data = text.partition(b"\n")
     try:
-        told = json.loads(head)
+        header = json.loads(head)
     except ValueError:
         raise ArgumentError("saved: these bytes hold worlds alone, without those who drive them") from None
-    if told["about"] != about:
-        raise ArgumentError(f"saved: these worlds were driven in another way: {told['about']}, here {about}")
-    found: Arrays = {}
-    at = 0
-    for (first, second, rows), (names, array) in zip(told["rows"], like.items(), strict=True):
-        if second == "steps" and rows != len(array):  # the first array: a number per world
+    if header["about"] != about:
+        raise ArgumentError(f"saved: these worlds were driven in another way: {header['about']}, here {about}")
+    arrays: Arrays = {}
+    offset = 0
+    for (species, name, rows), (names, array) in zip(header["rows"], like.items(), strict=True):
+        if name == "steps" and rows != len(array):  # the first array: a number per world
             raise ArgumentError(f"saved: there are {rows} worlds, here {len(array)}")
         shape = (rows, *array.shape[1:])
         count = rows * int(np.prod(array.shape[1:], dtype=np.int64))
-        if (first, second) != names or (rows != len(array) and second != FREE) or rows < 0:
-            raise ArgumentError(f"saved: {second} is of other worlds")
-        found[names] = np.frombuffer(rest, array.dtype, count, at).reshape(shape).copy()
-        at += count * array.dtype.itemsize
-    return found
+        if (species, name) != names or (rows != len(array) and name != FREE) or rows < 0:
+            raise ArgumentError(f"saved: {name} is of other worlds")
+        arrays[names] = np.frombuffer(data, array.dtype, count, offset).reshape(shape).copy()
+        offset += count * array.dtype.itemsize
+    return arrays

@@ -145,28 +145,28 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         if not self.agents:
             return {}, {}, {}, {}, {}
         self._tell(actions)
-        before = dict(self._row)
+        rows_before = dict(self._row)
         groups = self._vector.groups
         self._vector.step(self._vector.actions)
-        rewards = {name: float(group.rewards[0, row]) for name, (group, row) in before.items()}
+        rewards = {name: float(group.rewards[0, row]) for name, (group, row) in rows_before.items()}
         self._list_agents()
-        names = list(dict.fromkeys([*before, *self._row]))
-        gone = before.keys() - self._row.keys()
-        over = self._slots and not any(group.alive.any() for group in groups.values())
-        done = any(group.truncated.any() for group in groups.values())
+        names = list(dict.fromkeys([*rows_before, *self._row]))
+        departed = rows_before.keys() - self._row.keys()
+        extinct = self._slots and not any(group.alive.any() for group in groups.values())
+        truncated = any(group.truncated.any() for group in groups.values())
         observations = self._observations()
-        for name in gone:
-            observations[name] = np.zeros(len(before[name][0].columns), np.float32)
+        for name in departed:
+            observations[name] = np.zeros(len(rows_before[name][0].columns), np.float32)
         result = (
             observations,
             {name: rewards.get(name, 0.0) for name in names},
-            {name: over or name in gone for name in names},
-            {name: done and name not in gone for name in names},
+            {name: extinct or name in departed for name in names},
+            {name: truncated and name not in departed for name in names},
             {name: self._info(name) for name in names},
         )
-        if done or over:
+        if truncated or extinct:
             self.agents = []
-        for name in gone:
+        for name in departed:
             self._spaces.pop(name, None)
         return result
 
@@ -184,10 +184,10 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        self._row = {name: (self._vector.groups[own], row) for name, (own, row) in state["_row"].items()}
+        self._row = {name: (self._vector.groups[species], row) for name, (species, row) in state["_row"].items()}
 
     def _species_of(self, group: Group) -> str:
-        return next(name for name, each in self._vector.groups.items() if each is group)
+        return next(name for name, candidate in self._vector.groups.items() if candidate is group)
 
     def _tell(self, actions: Any) -> None:
         """Writes the actions into the arrays, or none of them if one is wrong."""
@@ -195,8 +195,8 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
             raise ArgumentError(
                 f"actions = {brief(repr(actions))}: must be a dict of two numbers for each agent, {{}} for none"
             )
-        given = {name: self._action(name, action) for name, action in actions.items()}
-        for name, action in given.items():
+        action_by_agent = {name: self._action(name, action) for name, action in actions.items()}
+        for name, action in action_by_agent.items():
             group, row = self._row[name]
             group.actions[0, row] = action
 
@@ -206,16 +206,16 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         try:
             with np.errstate(over="ignore"):
                 array = np.ma.asanyarray(action) if np.ma.isMaskedArray(action) else np.asarray(action)
-                given = np.asarray(array, np.float32) if array.dtype.kind in "fiu" else np.empty(0, np.float32)
+                values = np.asarray(array, np.float32) if array.dtype.kind in "fiu" else np.empty(0, np.float32)
         except (TypeError, ValueError):
-            array = given = np.empty(0, np.float32)
+            array = values = np.empty(0, np.float32)
         group = self._row[name][0]
-        good = given.shape == (len(ACTIONS),) and np.isfinite(given).all() and not np.ma.is_masked(array)
-        if not good or not ((given >= group.low) & (given <= group.high)).all():
-            said = brief(" ".join(str(action).split()))
-            within = "" if group.open else f", from {group.low:g} to {group.high:g}"
-            raise ArgumentError(f"actions[{name!r}] = {said}: must be two finite numbers, left and right{within}")
-        return given
+        is_valid = values.shape == (len(ACTIONS),) and np.isfinite(values).all() and not np.ma.is_masked(array)
+        if not is_valid or not ((values >= group.low) & (values <= group.high)).all():
+            text = brief(" ".join(str(action).split()))
+            range_text = "" if group.open else f", from {group.low:g} to {group.high:g}"
+            raise ArgumentError(f"actions[{name!r}] = {text}: must be two finite numbers, left and right{range_text}")
+        return values
 
     def _list_agents(self) -> None:
         if not self._slots:
@@ -224,7 +224,7 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
                 for species, group in self._vector.groups.items()
                 for row in np.flatnonzero(group.alive[0])
             ]
-            living.sort(key=lambda each: each[0])
+            living.sort(key=lambda entry: entry[0])
             self._row = {f"{species}_{identity}": (group, row) for identity, species, group, row in living}
         self.agents = list(self._row)
 
@@ -232,8 +232,8 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         if not self._slots:
             return {}
         group, row = self._row[name]
-        told = {"alive": group.alive, "died": group.terminated, "born": group.born}
-        return {what: bool(array[0, row]) for what, array in told.items()}
+        flags = {"alive": group.alive, "died": group.terminated, "born": group.born}
+        return {flag: bool(array[0, row]) for flag, array in flags.items()}
 
     def _observations(self) -> Values:
         return {name: group.observations[0, row].copy() for name, (group, row) in self._row.items()}
@@ -247,7 +247,7 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
             # Two worlds with the same seed draw the same actions, also for agents born in them.
             seeds = np.random.SeedSequence([self._vector.simulation.seeds[0], int(number)]).generate_state(2)
             spaces = self._vector.spaces
-            observed = spaces.box_of(species)
-            observed.seed(int(seeds[0]))
-            self._spaces[agent] = (observed, spaces.action_box(species, seed=int(seeds[1])))
+            observation_space = spaces.box_of(species)
+            observation_space.seed(int(seeds[0]))
+            self._spaces[agent] = (observation_space, spaces.action_box(species, seed=int(seeds[1])))
         return self._spaces[agent]

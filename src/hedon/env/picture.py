@@ -44,9 +44,9 @@ class Eye:
             self._window.close()
 
     def _picture(self, world: World) -> NDArray[np.uint8]:
-        seen = snapshot(world)
+        scene = snapshot(world)
         place = (world.index, world.seed)  # obstacles depend on the seed
         if place not in self._films:
-            self._films = {place: Film(seen, self._colors, WIDTH, self._top)}
+            self._films = {place: Film(scene, self._colors, WIDTH, self._top)}
         film = self._films[place]
-        return np.frombuffer(film.draw(seen), np.uint8).reshape(film.height, film.width, 4)[..., :3].copy()
+        return np.frombuffer(film.draw(scene), np.uint8).reshape(film.height, film.width, 4)[..., :3].copy()

@@ -88,16 +88,16 @@ class Records:
             RecordError: A folder cannot be written.
         """
         self.begin()
-        begun = time.perf_counter()
+        start = time.perf_counter()
         try:
             self._simulation.engine.run(1)
         except EngineError as error:
             self.fail(str(error))
             raise
         except KeyboardInterrupt:  # raised after the step is done
-            self.note(time.perf_counter() - begun)
+            self.note(time.perf_counter() - start)
             raise
-        self.note(time.perf_counter() - begun)
+        self.note(time.perf_counter() - start)
 
     def fail(self, fault: str) -> None:
         """Ends the records after an error in a world."""
@@ -129,9 +129,9 @@ class Records:
     def begin_again(self, worlds: NDArray[np.bool_]) -> None:
         """Prepares the records of worlds that have restarted."""
         waiting = {world.index for run in self._runs for world in run.worlds}  # worlds without a step so far
-        begun = [world for world in self._simulation.worlds if worlds[world.index] and world.index not in waiting]
-        if begun:
-            self._runs.append(RunRecord(self._simulation, begun, free_folder(self.folder), self._frames))
+        restarted = [world for world in self._simulation.worlds if worlds[world.index] and world.index not in waiting]
+        if restarted:
+            self._runs.append(RunRecord(self._simulation, restarted, free_folder(self.folder), self._frames))
 
     def close(self) -> None:
         """Writes everything that is pending; a second call has no effect.
@@ -166,21 +166,21 @@ class RunRecord:
             world._row = row
         self._recorder: Recorder | None = None
         self._step, self._next, self._seconds = 0, 1, 0.0
-        with ExitStack() as held:
-            held.enter_context(FolderLock(out))
+        with ExitStack() as stack:
+            stack.enter_context(FolderLock(out))
             require_no_run(out)
-            self._held = held.pop_all()
+            self._held = stack.pop_all()
 
     def begin(self) -> None:
         """Writes the start of the run, before the first step of its worlds."""
         if self._recorder is not None or not self.worlds:
             return
-        simulation, every = self._simulation, list(self.worlds)
-        drive = Drive(simulation.config, tuple(world.seed for world in every), MAX_STEPS, self._frames)
-        self._manifest = first_manifest(drive, simulation, worlds=every)
+        simulation, worlds = self._simulation, list(self.worlds)
+        drive = Drive(simulation.config, tuple(world.seed for world in worlds), MAX_STEPS, self._frames)
+        self._manifest = first_manifest(drive, simulation, worlds=worlds)
         writer = Writer(self.folder, dump_toml(simulation.config), self._manifest)
         self._writer = self._held.enter_context(writer)
-        self._recorder = Recorder(simulation, writer, self._frames, Start(), worlds=every)
+        self._recorder = Recorder(simulation, writer, self._frames, Start(), worlds=worlds)
         self._recorder.checkpoint(0, 0.0)
 
     def note(self, seconds: float) -> None:
@@ -190,18 +190,18 @@ class RunRecord:
             return
         self._step += 1
         self._seconds += seconds
-        ends = self._step % self._window == 0
-        shown = bool(self._frames) and self._step % self._frames == 0
-        if not (ends or shown or self._step >= self._next):
+        is_interval = self._step % self._window == 0
+        is_frame = bool(self._frames) and self._step % self._frames == 0
+        if not (is_interval or is_frame or self._step >= self._next):
             return
         self._writer.require_folder()
         # The engine keeps deaths until they are read: check again before they can fill an eighth of its space.
-        full = 8 * max(world.waiting_deaths for world in self.worlds)
+        fill = 8 * max(world.waiting_deaths for world in self.worlds)
         recorder.deaths()
-        self._next = self._step + max(1, int(min(self._window, 1 / full if full else self._window)))
-        if ends:
+        self._next = self._step + max(1, int(min(self._window, 1 / fill if fill else self._window)))
+        if is_interval:
             recorder.interval()
-        if shown:
+        if is_frame:
             recorder.frame()
         if recorder.checkpoint_due and not self._ends:  # a checkpoint needs all worlds of a run
             recorder.checkpoint(self._step, self._seconds)
@@ -244,9 +244,9 @@ class RunRecord:
             picture = snapshot(recorder.worlds[0])
             for world in recorder.worlds:
                 self._forget(world, failed=status == "failed")
-            whole = replace(self._manifest, steps_asked=max(self._step, 1))
+            manifest = replace(self._manifest, steps_asked=max(self._step, 1))
             ends = [self._ends[row] for row in sorted(self._ends)]
-            self._manifest = last_manifest(whole, ends, status, self._seconds, self._writer)
+            self._manifest = last_manifest(manifest, ends, status, self._seconds, self._writer)
         save_snapshot(self.folder, picture)
 
     def _forget(self, world: World, *, failed: bool = False) -> None:

@@ -46,7 +46,7 @@ class SlotVecEnv(VecEnv, Copied):
 
     def reset(self) -> Any:
         """Starts all worlds; returns the observations (slots, entries)."""
-        seed = next((each for each in self._seeds if each is not None), None)  # seed of the first world
+        seed = next((candidate for candidate in self._seeds if candidate is not None), None)  # seed of the first world
         self._reset_seeds()
         return self.lives.reset(seed)
 
@@ -57,16 +57,16 @@ class SlotVecEnv(VecEnv, Copied):
     def step_wait(self) -> Any:
         """Advances the worlds: observations (slots, entries), rewards (slots,), ends of lives (slots,), infos."""
         step = self.lives.step(self._given)
-        infos: list[dict[str, Any]] = [{"alive": each} for each in step.alive.tolist()]
-        now = round(time.monotonic() - self._begun, 6)
+        infos: list[dict[str, Any]] = [{"alive": is_alive} for is_alive in step.alive.tolist()]
+        elapsed = round(time.monotonic() - self._begun, 6)
         for i in np.flatnonzero(step.ended).tolist():
             infos[i] |= {"terminal_observation": step.last[i], "TimeLimit.truncated": bool(step.cut[i])}
-            infos[i]["episode"] = {"r": float(step.paid[i]), "l": int(step.lived[i]), "t": now}
+            infos[i]["episode"] = {"r": float(step.paid[i]), "l": int(step.lived[i]), "t": elapsed}
         return step.observations, step.rewards, step.ended, infos
 
     def __getstate__(self) -> dict[str, Any]:
-        given = None if self._given is self.lives.group.actions else self._given
-        return self.__dict__ | {"_given": given}
+        actions = None if self._given is self.lives.group.actions else self._given
+        return self.__dict__ | {"_given": actions}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)

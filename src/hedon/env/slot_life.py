@@ -79,26 +79,26 @@ class SlotLives:
         Args:
             actions: (slots, 2), or the group's array `actions`.
         """
-        group, worlds, begins = self.group, self.worlds, self._over
+        group, worlds, restarting = self.group, self.worlds, self._over
         worlds.step(actions)
-        if begins.any():
-            worlds.reset(options={RESET_MASK: begins})
-        rewards = np.where(begins[:, None], np.float32(0), group.rewards)
-        over = ~begins & (group.truncated.any(axis=1) | ~group.alive.any(axis=1))
-        there = ~begins[:, None] & (group.ids_before != NOBODY)
+        if restarting.any():
+            worlds.reset(options={RESET_MASK: restarting})
+        rewards = np.where(restarting[:, None], np.float32(0), group.rewards)
+        is_over = ~restarting & (group.truncated.any(axis=1) | ~group.alive.any(axis=1))
+        was_alive = ~restarting[:, None] & (group.ids_before != NOBODY)
         self._paid += rewards
-        self._lived += there
-        ended = there & (group.terminated | over[:, None])
+        self._lived += was_alive
+        ended = was_alive & (group.terminated | is_over[:, None])
         paid, lived = np.where(ended, self._paid, 0.0).ravel(), np.where(ended, self._lived, 0).ravel()
         self._paid[ended], self._lived[ended] = 0, 0
         cut, ended = (ended & group.truncated & ~group.born).ravel(), ended.ravel()
         rows = self._table(group.observations)
         last = np.where(cut[:, None], rows, np.float32(0))
         if not self._at_once:
-            self._over = over
+            self._over = is_over
             rows[ended] = last[ended]
-        elif over.any():
-            worlds.reset(options={RESET_MASK: over})
+        elif is_over.any():
+            worlds.reset(options={RESET_MASK: is_over})
             rows = self._table(group.observations)
         alive = group.alive.ravel().copy()
         return SlotStep(rows, rewards.ravel(), ended, cut, last, paid, lived * worlds.repeat, alive)

@@ -29,11 +29,11 @@ def bounds(config: Config, name: str) -> tuple[NDArray[np.float32], NDArray[np.f
     low += [0.0] * (len(layout.touches) * species.sensor.touch_sectors)
     high = [1.0] * len(low)
     for channel in layout.observed:
-        least, most = channel.limits
+        lowest, highest = channel.limits
         if channel.source == "store":
-            most = capacities[channel.index]
-        low.append(float(np.float32(least) / np.float32(channel.scale)))
-        high.append(float(np.float32(most) / np.float32(channel.scale)))
+            highest = capacities[channel.index]
+        low.append(float(np.float32(lowest) / np.float32(channel.scale)))
+        high.append(float(np.float32(highest) / np.float32(channel.scale)))
     return np.array(low, np.float32), np.array(high, np.float32)
 
 

@@ -107,11 +107,11 @@ class VectorEnv(Cloned):
     def _made(self, simulation: Simulation, names: Sequence[str], form: Form) -> None:
         self.simulation, self.config = simulation, simulation.config
         simulation._driven = True
-        every = list(self.config.species)
-        meals = (*self.config.food, *every)[: simulation.engine.meals(0).shape[1]]
+        species_names = list(self.config.species)
+        meals = (*self.config.food, *species_names)[: simulation.engine.meals(0).shape[1]]
         self.groups = {
             name: Group(
-                every.index(name),
+                species_names.index(name),
                 observation_columns(self.config, name),
                 meals,
                 self.config.species[name].motor,
@@ -197,8 +197,8 @@ class VectorEnv(Cloned):
         elif self._fresh and mask.all():
             seeds = self.simulation.seeds
         else:
-            drawn = iter(self._draw_seeds(int(mask.sum())))
-            seeds = tuple(next(drawn) if begins else 0 for begins in mask)
+            new_seeds = iter(self._draw_seeds(int(mask.sum())))
+            seeds = tuple(next(new_seeds) if restarts else 0 for restarts in mask)
         records = None if self._fresh and seed is None and mask.all() else self._record
         if records is not None:
             records.end(mask, [seeds[i] for i in np.flatnonzero(mask)])
@@ -219,9 +219,9 @@ class VectorEnv(Cloned):
         self._next_seed = int(np.random.SeedSequence(list(map(int, seeds))).generate_state(1, np.uint64)[0])
 
     def _draw_seeds(self, count: int) -> list[int]:
-        state, *drawn = np.random.SeedSequence(self._next_seed).generate_state(1 + count, np.uint64).tolist()
+        state, *values = np.random.SeedSequence(self._next_seed).generate_state(1 + count, np.uint64).tolist()
         self._next_seed = state
-        return [seed % (MAX_SEED + 1) for seed in drawn]  # within the range of records
+        return [seed % (MAX_SEED + 1) for seed in values]  # within the range of records
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """Advances every world by `repeat` steps with these actions.
@@ -251,20 +251,20 @@ class VectorEnv(Cloned):
         for group in self.groups.values():
             group._begin()
         self._fresh = False
-        done, stopped = 0, None
-        while done < self.repeat and stopped is None:
+        steps_done, stopped = 0, None
+        while steps_done < self.repeat and stopped is None:
             try:
                 self._record.advance() if self._record else engine.run(1)
             except KeyboardInterrupt as interrupt:  # raised by the engine after the step
                 stopped = interrupt
-            done += 1
-            last = done == self.repeat or stopped is not None
+            steps_done += 1
+            last = steps_done == self.repeat or stopped is not None
             for group in self.groups.values():
                 if self.repeat == 1:
                     group._look(engine)
                 else:
-                    group._count(engine, first=done == 1, last=last)
-        self._judge(done)
+                    group._count(engine, first=steps_done == 1, last=last)
+        self._judge(steps_done)
         if stopped is not None:
             raise stopped
         if self.render_mode == "human":
@@ -293,8 +293,8 @@ class VectorEnv(Cloned):
         Raises:
             RecordError: The records cannot be written.
         """
-        for each in filter(None, (self._record, self._eye)):
-            each.close()
+        for resource in filter(None, (self._record, self._eye)):
+            resource.close()
 
     def __enter__(self) -> Self:
         return self
@@ -318,18 +318,18 @@ class VectorEnv(Cloned):
         """
         if self._record is not None:
             raise ArgumentError("restore: worlds that are recorded only go on or begin again: make others for it")
-        found = arrays_in(self.simulation._unpack(saved), self._about(), self._arrays())
+        arrays = arrays_in(self.simulation._unpack(saved), self._about(), self._arrays())
         self.simulation._restore(saved)
         for name, group in self.groups.items():
-            group._set({key[1]: array for key, array in found.items() if key[0] == name})
-        self._steps[...] = found["", "steps"]
-        (self._next_seed,), (self._fresh,) = found["", "next_seed"].tolist(), found["", "fresh"].tolist()
+            group._set({key[1]: array for key, array in arrays.items() if key[0] == name})
+        self._steps[...] = arrays["", "steps"]
+        (self._next_seed,), (self._fresh,) = arrays["", "next_seed"].tolist(), arrays["", "fresh"].tolist()
 
     def clone(self) -> Self:
         """Returns a copy with its own worlds and arrays, which continues as this one would; it is not recorded."""
-        made = type(self).__new__(type(self))
-        made._go_on(self.simulation._fresh_one(), **self._given(), saved=self.save())
-        return made
+        duplicate = type(self).__new__(type(self))
+        duplicate._go_on(self.simulation._fresh_one(), **self._given(), saved=self.save())
+        return duplicate
 
     def __getstate__(self) -> dict[str, Any]:
         return self._given() | {"saved": self.save(), "worlds": self.simulation._arguments()}
@@ -340,12 +340,14 @@ class VectorEnv(Cloned):
         self._go_on(simulation, **state)
 
     def _given(self) -> dict[str, Any]:
-        given = {name: vars(self)[name] for name in ("repeat", "max_steps", "render_mode", "_start")}
-        return {**given, "about": self._about(), "added": self._added()}
+        arguments = {name: vars(self)[name] for name in ("repeat", "max_steps", "render_mode", "_start")}
+        return {**arguments, "about": self._about(), "added": self._added()}
 
-    def _go_on(self, simulation: Simulation, about: Any, saved: bytes, added: dict[str, Any], **given: Any) -> None:
+    def _go_on(
+        self, simulation: Simulation, about: Any, saved: bytes, added: dict[str, Any], **attributes: Any
+    ) -> None:
         """Sets up a copy from the state of another environment."""
-        vars(self).update(given)
+        vars(self).update(attributes)
         self._made(simulation, about["species"], about["actions"])
         self.restore(saved)
         vars(self).update(copy.deepcopy(added))
@@ -356,12 +358,12 @@ class VectorEnv(Cloned):
 
     def _arrays(self) -> dict[tuple[str, str], NDArray[Any]]:
         """All arrays besides the worlds, by species and name."""
-        own = {
+        world_arrays = {
             "steps": self._steps,
             "next_seed": np.array([self._next_seed], np.uint64),
             "fresh": np.array([self._fresh]),
         }
-        return {("", name): array for name, array in own.items()} | {
+        return {("", name): array for name, array in world_arrays.items()} | {
             (species, name): array for species, group in self.groups.items() for name, array in group._arrays().items()
         }
 
@@ -369,21 +371,23 @@ class VectorEnv(Cloned):
     def _told(self) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """The arrays that every step returns; they are never replaced."""
         info = {name: self._of(name) for name in ("alive", "born", "births", "deaths", "meals")}
-        seen, paid, died, cut = map(self._of, ("observations", "rewards", "terminated", "truncated"))
-        return seen, paid, died, cut, {"agent_id": self._of("ids"), **info}
+        observations, rewards, terminated, truncated = map(
+            self._of, ("observations", "rewards", "terminated", "truncated")
+        )
+        return observations, rewards, terminated, truncated, {"agent_id": self._of("ids"), **info}
 
     def _of(self, name: str) -> Any:
         """An array of the only driven species, or a dictionary of each species' array."""
-        every = {species: getattr(group, name) for species, group in self.groups.items()}
-        return every if len(every) > 1 else next(iter(every.values()))
+        arrays = {species: getattr(group, name) for species, group in self.groups.items()}
+        return arrays if len(arrays) > 1 else next(iter(arrays.values()))
 
     def _judge(self, steps: int) -> None:
         """Marks the agents that have reached `max_steps`."""
         self._steps += steps
         if self.max_steps:
-            over = (self._steps >= self.max_steps)[:, None]
+            reached_limit = (self._steps >= self.max_steps)[:, None]
             for group in self.groups.values():
-                np.logical_and(group.alive, over, out=group.truncated)
+                np.logical_and(group.alive, reached_limit, out=group.truncated)
 
     def _open(self, worlds: NDArray[np.bool_]) -> None:
         """Reads worlds that have just started."""

@@ -49,17 +49,17 @@ class Watch:
         """Finishes the records."""
         self._records.close()
 
-    def _told(self, watched: int, begins: Any, seeds: Any, complaint: int, room: int) -> int:
+    def _told(self, watched: int, restarting: Any, seeds: Any, complaint: int, room: int) -> int:
         """Writes what is due at one moment. Returns 0, or 1 with a message, as no exception may reach the engine."""
         try:
-            self._write(watched, begins, seeds)
+            self._write(watched, restarting, seeds)
         except (HedonError, OSError) as error:
             text = str(error).encode()[: room - 1] + b"\0"
             ctypes.memmove(complaint, text, len(text))
             return 1
         return 0
 
-    def _write(self, watched: int, begins: Any, seeds: Any) -> None:
+    def _write(self, watched: int, restarting: Any, seeds: Any) -> None:
         if watched == BEFORE_STEP:
             self._records.require_open()
             self._records.begin()
@@ -67,7 +67,7 @@ class Watch:
         elif watched == AFTER_STEP:
             self._records.note(time.perf_counter() - self._begun)
         elif watched == BEGIN:
-            mask = np.array(begins[: self._worlds], np.bool_)
+            mask = np.array(restarting[: self._worlds], np.bool_)
             self._records.end(mask, np.array(seeds[: self._worlds], np.uint64)[mask].tolist())
             self._records.begin_again(mask)
         else:
