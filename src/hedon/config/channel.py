@@ -174,14 +174,14 @@ def known_channels(config: Settings, species: SpeciesConfig) -> Channels:
     }
     return {
         (key, i): Channel(
-            *(source.name.format(each), key, i),
-            meaning=source.meaning.format(each),
+            *(source.name.format(label), key, i),
+            meaning=source.meaning.format(label),
             unit=source.unit,
             limits=source.limits,
         )
         for key, source in SOURCES.items()
-        for i, each in enumerate(names[source.of] if isinstance(source.of, str) else source.of)
-        if each is not None
+        for i, label in enumerate(names[source.of] if isinstance(source.of, str) else source.of)
+        if label is not None
     }
 
 
@@ -252,5 +252,5 @@ def recorded_channels(species: SpeciesConfig, known: Channels) -> tuple[Channel,
     follow.
     """
     stores = [known[source, i + 1] for i in range(len(species.store)) for source in ("store_before", "store")]
-    asked = (each for each in known.values() if each.source in QUERIED)
-    return (*(known[each] for each in RECORDED), *stores, *asked)
+    queried = (each for each in known.values() if each.source in QUERIED)
+    return (*(known[each] for each in RECORDED), *stores, *queried)

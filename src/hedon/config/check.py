@@ -38,8 +38,8 @@ def _names(check: Check) -> None:
     for field in PROVENANCE:  # run folders are named after them
         rule = 'must have only letters, digits, "-", "_" and ".", at most 80 of them, and not begin with a "."'
         check.match(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}", field, rule)
-    for name, what in (("founders", "table of founders"), ("networks", "file of networks")):
-        rule = f"must be empty, or the digest of a {what}, which `--{name}` sets"
+    for name, kind in (("founders", "table of founders"), ("networks", "file of networks")):
+        rule = f"must be empty, or the digest of a {kind}, which `--{name}` sets"
         check.match("([0-9a-f]{64})?", f"world.{name}", rule)
 
 
@@ -51,8 +51,8 @@ def _arena(check: Check, arena: ArenaConfig) -> None:
         path, (ax, ay, bx, by) = f"arena.inner_walls[{i}]", wall
         outside = _is_outside(arena, ax, ay) or _is_outside(arena, bx, by)
         check.need(not outside, path, "lies outside the arena", wall)
-        long = math.dist((ax, ay), (bx, by)) >= MIN_WALL
-        check.need(long, path, f"must be at least {MIN_WALL:g} [u] long", wall)
+        is_long = math.dist((ax, ay), (bx, by)) >= MIN_WALL
+        check.need(is_long, path, f"must be at least {MIN_WALL:g} [u] long", wall)
 
 
 def _corners_fit(arena: ArenaConfig) -> bool:
@@ -76,18 +76,20 @@ def _obstacles(check: Check, config: Settings) -> None:
         _grid(check, config)
         return
     # Circumscribed circles must not overlap; random placement fails long before the circles fill the arena.
-    around = obstacle.max_side / (2 * math.sin(math.pi / obstacle.corners))
-    area, room = math.pi * around**2, MAX_COVERAGE * config.arena.width * config.arena.height
+    circumradius = obstacle.max_side / (2 * math.sin(math.pi / obstacle.corners))
+    area, room = math.pi * circumradius**2, MAX_COVERAGE * config.arena.width * config.arena.height
     rule = f"the arena has room for {math.floor(room / area)} with sides of {obstacle.max_side:g}"
     check.need(obstacle.count * area <= room, "obstacle.count", f"too many to place: {rule}")
 
 
 def _grid(check: Check, config: Settings) -> None:
-    cell, short = single(config.obstacle.cell), min(config.arena.width, config.arena.height)
+    cell, shorter_side = single(config.obstacle.cell), min(config.arena.width, config.arena.height)
     check.need(
-        1 <= cell <= short, "obstacle.cell", f"must be 0, or from 1 to the shorter side of the arena, {short:g} [u]"
+        1 <= cell <= shorter_side,
+        "obstacle.cell",
+        f"must be 0, or from 1 to the shorter side of the arena, {shorter_side:g} [u]",
     )
-    if 1 <= cell <= short:
+    if 1 <= cell <= shorter_side:
         room = math.prod(math.floor(single(side) / cell) for side in (config.arena.width, config.arena.height)) // 2
         rule = f"must be at most {room}: half of the cells of {cell:g} u"
         check.need(config.obstacle.count <= room, "obstacle.count", rule)
@@ -105,11 +107,11 @@ def _kinds(check: Check, config: Settings) -> None:
         check.match("#[0-9a-f]{6}", f"{path}.color", 'must be "#rrggbb" in lower-case hexadecimal digits')
         rule = f"must be at most {path}.capacity = {food.capacity}"
         check.need(food.initial_count <= food.capacity, f"{path}.initial_count", rule)
-        for what, table in (("gives", food.gives), ("needs", food.needs)):
-            known = (ENERGY, *store_columns(config))
-            for name in table.keys() - set(known):
-                rule = "no species has such a store: there are " + ", ".join(known)
-                check.add(f"{path}.{what}.{name}", rule, nearest(name, known))
+        for field, table in (("gives", food.gives), ("needs", food.needs)):
+            stores = (ENERGY, *store_columns(config))
+            for name in table.keys() - set(stores):
+                rule = "no species has such a store: there are " + ", ".join(stores)
+                check.add(f"{path}.{field}.{name}", rule, nearest(name, stores))
         _look(check, config, kind)
         _placement(check, config.arena, food, f"{path}.placement")
 
@@ -118,10 +120,12 @@ def _look(check: Check, config: Settings, kind: str) -> None:
     other, path = config.food[kind].looks_like, f"food.{kind}.looks_like"
     if not other:
         return
-    known = [name for name in config.food if name != kind]
-    if other not in known:
+    candidates = [name for name in config.food if name != kind]
+    if other not in candidates:
         check.add(
-            path, "must be another kind of food: there are " + (", ".join(known) or "none"), nearest(other, known)
+            path,
+            "must be another kind of food: there are " + (", ".join(candidates) or "none"),
+            nearest(other, candidates),
         )
     elif config.food[other].looks_like:
         check.add(path, f"{other} looks like {config.food[other].looks_like}: name a kind that looks like itself")
@@ -145,23 +149,23 @@ def _placement(check: Check, arena: ArenaConfig, food: FoodConfig, path: str) ->
 
 def _tables(check: Check, section: Any, path: str) -> None:
     """Reports invalid names in tables with a fixed set of names, and schedules that cannot be followed."""
-    for place, inner, own in inner_sections(section, path):
+    for place, inner, value in inner_sections(section, path):
         name = place.rpartition(".")[2]
         if inner.names and name not in inner.names:
-            what = "this cannot follow a schedule here" if inner.type is ScheduleConfig else "no gene can set this"
-            check.add(place, f"{what}: there are " + ", ".join(inner.names), nearest(name, inner.names))
+            reason = "this cannot follow a schedule here" if inner.type is ScheduleConfig else "no gene can set this"
+            check.add(place, f"{reason}: there are " + ", ".join(inner.names), nearest(name, inner.names))
         elif inner.type is ScheduleConfig:
-            _schedule(check, own, f"{place}.points", inner.names[name])
-        _tables(check, own, f"{place}.")
+            _schedule(check, value, f"{place}.points", inner.names[name])
+        _tables(check, value, f"{place}.")
 
 
-def _schedule(check: Check, schedule: ScheduleConfig, path: str, most: float) -> None:
+def _schedule(check: Check, schedule: ScheduleConfig, path: str, largest: float) -> None:
     steps = [step for step, _ in schedule.points]
     if not steps:
         check.add(path, "must have at least one point")
-    rises = all(first < second for first, second in pairwise(steps)) and all(step >= 0 for step in steps)
-    check.need(rises, path, "steps must rise, from 0 on")
-    if rises and steps and schedule.period:
+    is_rising = all(first < second for first, second in pairwise(steps)) and all(step >= 0 for step in steps)
+    check.need(is_rising, path, "steps must rise, from 0 on")
+    if is_rising and steps and schedule.period:
         check.need(steps[-1] < schedule.period, path, f"steps must lie below period = {schedule.period}")
     for _, factor in schedule.points:
-        check.need(0 <= factor <= most, path, f"factors must be from 0 to {most:g}", factor)
+        check.need(0 <= factor <= largest, path, f"factors must be from 0 to {largest:g}", factor)

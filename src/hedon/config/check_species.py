@@ -54,9 +54,10 @@ def check_species(check: Check) -> None:
         _lists(check, config, species, path)
         _stores(check, config, species, path)
         _read(check, config, species, path)
-        before = len(check.problems)
+        problem_count = len(check.problems)
         _channels(check, config, species, path)
-        if len(check.problems) == before and not check.has(f"{path}genome."):  # otherwise the layout is undefined
+        # Otherwise the layout is undefined.
+        if len(check.problems) == problem_count and not check.has(f"{path}genome."):
             _genes(check, config, species, path)
             _rules(check, config, name, path)
     if config.species:
@@ -76,18 +77,18 @@ def _names(check: Check, config: Settings) -> None:
 def _body(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
     motor, side = species.motor, min(config.arena.width, config.arena.height)
     low, high = (single(motor.force_scale * force) for force in (motor.min_force, motor.max_force))
-    most = max(abs(low), abs(high))
+    max_force = max(abs(low), abs(high))
     check.need(low < high, f"{path}motor.min_force", f"must be below motor.max_force = {motor.max_force:g}")
-    rule = f"makes forces of {most:g}: at most {MAX_FORCE:g} is allowed"
-    check.need(most <= MAX_FORCE, f"{path}motor.force_scale", rule)
+    rule = f"makes forces of {max_force:g}: at most {MAX_FORCE:g} is allowed"
+    check.need(max_force <= MAX_FORCE, f"{path}motor.force_scale", rule)
     fits = 2 * single(max(species.body.radius, config.world.food_radius)) < single(side)
     check.need(fits, f"{path}body.radius", "a body does not fit into the arena")
     rule = f"a body of radius {species.body.radius:g} moves {_stride(config):.3g} u in a substep and may pass a wall: "
     rule += "lower physics.max_speed or physics.dt"
     check.need(species.body.radius > _stride(config), f"{path}body.radius", rule)
-    touched = len(chosen(config, species.body.collides))
-    rule = f"must be at most {MAX_TOUCH_BITS // touched} with {touched} types to touch"
-    check.need(touched * species.sensor.touch_sectors <= MAX_TOUCH_BITS, f"{path}sensor.touch_sectors", rule)
+    touched_count = len(chosen(config, species.body.collides))
+    rule = f"must be at most {MAX_TOUCH_BITS // touched_count} with {touched_count} types to touch"
+    check.need(touched_count * species.sensor.touch_sectors <= MAX_TOUCH_BITS, f"{path}sensor.touch_sectors", rule)
 
 
 def _stride(config: Settings) -> float:
@@ -99,12 +100,12 @@ def _life(check: Check, config: Settings, species: SpeciesConfig, path: str) -> 
     learning, birth, population = species.learning, species.birth, species.population
     rule = f"must be at most population.capacity = {population.capacity}"
     check.need(population.initial_count <= population.capacity, f"{path}population.initial_count", rule)
-    far = birth.distance_unit == "arena_width" and birth.distance_sd > 1
-    check.need(not far, f"{path}birth.distance_sd", 'must be at most 1 with birth.distance_unit = "arena_width"')
-    late = config.world.inheritance == "at_window_end"
+    is_far = birth.distance_unit == "arena_width" and birth.distance_sd > 1
+    check.need(not is_far, f"{path}birth.distance_sd", 'must be at most 1 with birth.distance_unit = "arena_width"')
+    inherits_late = config.world.inheritance == "at_window_end"
     for setting in ("network", "mating"):
         rule = 'must be "none" with world.inheritance = "at_window_end"'
-        check.need(not late or getattr(birth, setting) == "none", f"{path}birth.{setting}", rule)
+        check.need(not inherits_late or getattr(birth, setting) == "none", f"{path}birth.{setting}", rule)
     rule = 'must be "initial" with learning.policy = "fixed": a new network would never learn'
     check.need(learning.policy != "fixed" or birth.network == "initial", f"{path}birth.network", rule)
     rule = f'learning.policy = "{learning.policy}": there is no network to inherit'
@@ -117,16 +118,16 @@ def _life(check: Check, config: Settings, species: SpeciesConfig, path: str) -> 
 
 
 def _lists(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
-    everything, touched = [*config.species, *config.food], chosen(config, species.body.collides)
-    _known(check, f"{path}sensor.sees", species.sensor.sees, everything)
-    _known(check, f"{path}sensor.smells", species.sensor.smells, everything)
-    _known(check, f"{path}body.collides", species.body.collides, everything)
+    all_names, touched_types = [*config.species, *config.food], chosen(config, species.body.collides)
+    _known(check, f"{path}sensor.sees", species.sensor.sees, all_names)
+    _known(check, f"{path}sensor.smells", species.sensor.smells, all_names)
+    _known(check, f"{path}body.collides", species.body.collides, all_names)
     eats = f"{path}diet.eats"
     _known(check, eats, [name for name, _ in species.diet.eats], [*config.food, *config.species])
     for name, share in species.diet.eats:
-        good = name not in config.species or 0 <= share <= 1
-        check.need(good, eats, f"the share of a {name} must be from 0 to 1", share)
-        if name in everything and name not in touched:
+        is_valid = name not in config.species or 0 <= share <= 1
+        check.need(is_valid, eats, f"the share of a {name} must be from 0 to 1", share)
+        if name in all_names and name not in touched_types:
             check.add(eats, f"it passes through {name}, so it cannot eat it: add it to body.collides")
 
 
@@ -147,40 +148,40 @@ def _stores(check: Check, config: Settings, species: SpeciesConfig, path: str) -
             rule = f"it needs {name}, which it could never hold: give it store.{name}, or take {kind} out of diet.eats"
             check.add(f"{path}diet.eats", rule)
     observed, noses = sum(store.observed for store in species.stores.values()), species.sensor.noses
-    most = max(MAX_OBSERVED - observed, 0) // noses
+    limit = max(MAX_OBSERVED - observed, 0) // noses
     smells = len(smelled(config, species.sensor.smells))
-    rule = f"must name at most {most} with sensor.noses = {noses} and {observed} stores that it observes"
-    check.need(smells <= most, f"{path}sensor.smells", rule)
-    if smells <= most:
-        most = MAX_OBSERVED - observed - smells * noses
-        rule = f"must have at most {most} channels beside {observed} stores and {smells * noses} smells"
-        check.need(len(species.sensor.observes) <= most, f"{path}sensor.observes", rule)
+    rule = f"must name at most {limit} with sensor.noses = {noses} and {observed} stores that it observes"
+    check.need(smells <= limit, f"{path}sensor.smells", rule)
+    if smells <= limit:
+        limit = MAX_OBSERVED - observed - smells * noses
+        rule = f"must have at most {limit} channels beside {observed} stores and {smells * noses} smells"
+        check.need(len(species.sensor.observes) <= limit, f"{path}sensor.observes", rule)
 
 
-def _known(check: Check, path: str, names: Sequence[str], known: Sequence[str]) -> None:
+def _known(check: Check, path: str, names: Sequence[str], allowed: Sequence[str]) -> None:
     for name in names:
-        rule = "must be names of " + ", ".join(known) + f', or "{EVERYTHING}"'
-        check.need(name in known or name == EVERYTHING, path, rule, name, nearest(name, known))
+        rule = "must be names of " + ", ".join(allowed) + f', or "{EVERYTHING}"'
+        check.need(name in allowed or name == EVERYTHING, path, rule, name, nearest(name, allowed))
 
 
 def _read(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
     """Reports genes for rules and neighbor queries that nothing reads."""
-    ruled = any(getattr(species, use).rule for use in RULE_USES)
+    has_rule = any(getattr(species, use).rule for use in RULE_USES)
     rules = " or ".join(f"{use}.rule" for use in RULE_USES)
     for section, table in (("genome.extra", species.genome.extra), ("neighbor", species.neighbor)):
         for name in table:
             if not re.fullmatch(NAME, name):
                 check.add(f"{path}{section}.{name}", NAME_RULE)
-    if species.genome.extra and not ruled:
+    if species.genome.extra and not has_rule:
         check.add(f"{path}genome.extra", f"only a rule in Python reads this: give {rules}")
     reward = species.reward
-    read = {*species.sensor.observes, *(pay.channel or name for name, pay in reward.pay.items())}
-    read |= {reward.gate} if reward.family in GATED else set()
+    read_channels = {*species.sensor.observes, *(term.channel or name for name, term in reward.pay.items())}
+    read_channels |= {reward.gate} if reward.family in GATED else set()
     for name, query in species.neighbor.items():
         _known(check, f"{path}neighbor.{name}.of", query.of, [*config.species, *config.food])
-        finds = bool(asked_for(config, query.of))
-        check.need(finds, f"{path}neighbor.{name}.of", "must name a species or a kind of food")
-        if not ruled and not read & {SOURCES[each].name.format(name) for each in QUERIED}:
+        has_targets = bool(asked_for(config, query.of))
+        check.need(has_targets, f"{path}neighbor.{name}.of", "must name a species or a kind of food")
+        if not has_rule and not read_channels & {SOURCES[source].name.format(name) for source in QUERIED}:
             rule = f"nothing reads its channels, such as {name}_count: sensor.observes, reward.pay and reward.gate do"
             check.add(f"{path}neighbor.{name}", f"{rule}, and {rules}; neighbor.{name} = false leaves it out")
     if len(species.neighbor) > MAX_QUERIES:
@@ -194,7 +195,7 @@ def _rules(check: Check, config: Settings, name: str, path: str) -> None:
         rule = value_at(config, place)
         check.match(f"({RULE_PATTERN})?", place, "must be FILE.py:NAME, a Python file and a function in it")
         columns = rule_columns(config, name, use) if rule else ()
-        for column in {each for each in columns if columns.count(each) > 1}:
+        for column in {candidate for candidate in columns if columns.count(candidate) > 1}:
             rule = f"two things that it reads are called {column}: rename a food, a query or a term of reward.pay"
             check.need(False, place, rule)
     check.need(
@@ -204,28 +205,30 @@ def _rules(check: Check, config: Settings, name: str, path: str) -> None:
 
 def _channels(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
     """Reports unknown channel names."""
-    known, reward = known_channels(config, species), species.reward
-    names = list(dict.fromkeys(channel.name for channel in known.values()))
+    channels, reward = known_channels(config, species), species.reward
+    names = list(dict.fromkeys(channel.name for channel in channels.values()))
 
     def need(name: str, place: str) -> None:
-        count = len(called(known, name))
+        count = len(called(channels, name))
         if count == 0:
-            given = next((f"; {told}" for start, told in CHANNEL_SETTINGS.items() if name.startswith(start)), "")
-            rule = f"there is no channel {brief(name)!r} here{given}; there are " + ", ".join(names)
+            hint = next(
+                (f"; {explanation}" for start, explanation in CHANNEL_SETTINGS.items() if name.startswith(start)), ""
+            )
+            rule = f"there is no channel {brief(name)!r} here{hint}; there are " + ", ".join(names)
             check.add(place, rule, nearest(name, names))
         elif count > 1:
             check.add(place, f"{count} channels are called {name}: rename a food, a species, a store or a query")
 
     need(reward.gate, f"{path}reward.gate")
-    for name, pay in reward.pay.items():
+    for name, term in reward.pay.items():
         if not re.fullmatch(NAME, name):
             check.add(f"{path}reward.pay.{name}", NAME_RULE)
-        need(pay.channel or name, f"{path}reward.pay.{name}" + (".channel" if pay.channel else ""))
-    observed = [channel.name for channel in plain_channels(species, known)]
+        need(term.channel or name, f"{path}reward.pay.{name}" + (".channel" if term.channel else ""))
+    observed_names = [channel.name for channel in plain_channels(species, channels)]
     for name in species.sensor.observes:
         need(name, f"{path}sensor.observes.{name}")
-        twice = name in observed and len(called(known, name)) == 1
-        check.need(not twice, f"{path}sensor.observes.{name}", "it observes this already")
+        is_duplicate = name in observed_names and len(called(channels, name)) == 1
+        check.need(not is_duplicate, f"{path}sensor.observes.{name}", "it observes this already")
 
 
 def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) -> None:
@@ -236,11 +239,11 @@ def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
     if genome.learning and learning.policy != "ppo":
         rule = f'learning.policy = "{learning.policy}": there is no learning that genes could set'
         check.add(f"{path}genome.learning", rule)
-    odds = "gamma" not in genome.learning or 0 < learning.gamma < 1
-    check.need(odds, f"{path}learning.gamma", "must lie between 0 and 1 where a gene sets it")
+    is_valid_gamma = "gamma" not in genome.learning or 0 < learning.gamma < 1
+    check.need(is_valid_gamma, f"{path}learning.gamma", "must lie between 0 and 1 where a gene sets it")
     for value in ("learning_rate", "entropy_coef"):
-        good = value not in genome.learning or getattr(learning, value) > 0
-        check.need(good, f"{path}learning.{value}", "a gene multiplies it, so it must not be 0")
+        is_valid = value not in genome.learning or getattr(learning, value) > 0
+        check.need(is_valid, f"{path}learning.{value}", "a gene multiplies it, so it must not be 0")
     for place in genome.set:
         _settable(check, species, place, path)
     if check.has(f"{path}genome."):
@@ -249,7 +252,7 @@ def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
     names = [gene.name for gene in genes]
     if len(names) > MAX_GENES:
         check.add(f"{path}genome", f"there must be at most {MAX_GENES} genes, not {len(names)}")
-    for gene in {each for each in names if names.count(each) > 1}:
+    for gene in {name for name in names if names.count(name) > 1}:
         check.add(
             f"{path}genome", f"two genes would have the name {gene}: rename a food, a species or what reward.pay has"
         )
@@ -263,41 +266,48 @@ def _genes(check: Check, config: Settings, species: SpeciesConfig, path: str) ->
 def _settable(check: Check, species: SpeciesConfig, place: str, path: str) -> None:
     """Reports a gene whose number cannot be set by genes or has no effect."""
     kinds = {name: name if name == ENERGY else f"store.{name}" for name in species.stores}
-    known = [each for each in settable() if "<kind>" not in each]
-    known += [each.replace("store.<kind>", kind) for each in settable() for kind in kinds.values() if "<kind>" in each]
-    where, section, name = f"{path}genome.set.{place}", place.split(".")[0], place.split(".")[-1]
-    if place not in known:
-        why = NO_GENE.get(name) or NO_GENE.get(section) or "there are " + ", ".join(known)
-        check.add(where, f"no gene can set this: {why}", nearest(place, known))
+    places = [template for template in settable() if "<kind>" not in template]
+    places += [
+        template.replace("store.<kind>", kind)
+        for template in settable()
+        for kind in kinds.values()
+        if "<kind>" in template
+    ]
+    gene_path, section, name = f"{path}genome.set.{place}", place.split(".")[0], place.split(".")[-1]
+    if place not in places:
+        reason = NO_GENE.get(name) or NO_GENE.get(section) or "there are " + ", ".join(places)
+        check.add(gene_path, f"no gene can set this: {reason}", nearest(place, places))
     elif value_at(species, place) == 0:
-        check.add(where, f"a gene multiplies {path}{place}, so that must not be 0")
+        check.add(gene_path, f"a gene multiplies {path}{place}, so that must not be 0")
     elif idle := _idle(species).get(place):
-        check.add(where, f"it would have no effect, since {idle}")
+        check.add(gene_path, f"it would have no effect, since {idle}")
 
 
 def _idle(species: SpeciesConfig) -> dict[str, str]:
     """Numbers that have no effect in a species, each with the reason."""
     birth, sensor = species.birth, species.sensor
-    found = {
+    reasons = {
         "sensor.smell_decay": "" if sensor.smells else "it smells nothing: give sensor.smells",
         "sensor.nose_angle": "" if sensor.noses == 2 else "its nose lies ahead: give sensor.noses = 2",
         "birth.network_noise": "" if birth.network != "none" else "children inherit no network: give birth.network",
         "birth.mating_range": "" if birth.mating == "pairs" else 'nobody mates: give birth.mating = "pairs"',
     }
-    return {place: reason for place, reason in found.items() if reason}
+    return {place: reason for place, reason in reasons.items() if reason}
 
 
 def _own_bodies(check: Check, config: Settings, path: str, genes: Sequence[Gene]) -> None:
     """Reports body genes whose bodies do not fit into the arena, can pass walls, or lack their genes at birth."""
     side, radius = min(config.arena.width, config.arena.height), value_at(config, f"{path}body.radius")
     for gene in (gene for gene in genes if gene.place.startswith("genome.set.body.")):
-        most = radius * 10.0**gene.mutation.limit
-        if gene.place.endswith(".radius") and 2 * radius < side <= 2 * single(most):
-            rule = f"can make a radius of {most:g}, which does not fit into the arena: give genome.mutation.{gene.name}"
+        largest = radius * 10.0**gene.mutation.limit
+        if gene.place.endswith(".radius") and 2 * radius < side <= 2 * single(largest):
+            rule = (
+                f"can make a radius of {largest:g}, which does not fit into the arena: give genome.mutation.{gene.name}"
+            )
             check.add(f"{path}{gene.place}", f"{rule} a limit below {math.log10(side / 2 / radius):.3g}")
-        least, stride = radius / 10.0**gene.mutation.limit, _stride(config)
-        if gene.place.endswith(".radius") and least <= stride < radius:
-            rule = f"can make a radius of {least:.3g}, which passes walls, as it moves {stride:.3g} u in a substep"
+        smallest, stride = radius / 10.0**gene.mutation.limit, _stride(config)
+        if gene.place.endswith(".radius") and smallest <= stride < radius:
+            rule = f"can make a radius of {smallest:.3g}, which passes walls, as it moves {stride:.3g} u in a substep"
             limit = f"genome.mutation.{gene.name} a limit below {math.log10(radius / stride):.3g}"
             check.add(f"{path}{gene.place}", f"{rule}: give {limit}, or lower physics.max_speed")
         rule = 'bodies cannot change in a window: needs world.inheritance = "at_birth"'
@@ -307,26 +317,28 @@ def _own_bodies(check: Check, config: Settings, path: str, genes: Sequence[Gene]
 
 def _laws(check: Check, config: Settings, species: SpeciesConfig, path: str, genes: Sequence[Gene]) -> None:
     """Reports founder laws that exceed the limits of the species' genes."""
-    own = path if len(config.species) > 1 else ""
-    least: dict[str, Gene] = {}
+    prefix = path if len(config.species) > 1 else ""
+    tightest: dict[str, Gene] = {}
     for gene in genes:
-        if gene.mutation.limit < (least[gene.place].mutation.limit if gene.place in least else math.inf):
-            least[gene.place] = gene
-    unused = {place.removesuffix(".initial_mean"): None for place, _, _ in leaves(species) if place.endswith("_mean")}
-    for place, gene in (unused | least).items():
+        if gene.mutation.limit < (tightest[gene.place].mutation.limit if gene.place in tightest else math.inf):
+            tightest[gene.place] = gene
+    without_gene = {
+        place.removesuffix(".initial_mean"): None for place, _, _ in leaves(species) if place.endswith("_mean")
+    }
+    for place, gene in (without_gene | tightest).items():
         limit = gene.mutation.limit if gene else species.genome.weight_limit
-        where = place if place.startswith("food.") else path + place
-        rule = f"must be within ± {_limit_name(species, gene, own)}{limit:g}"
-        mean = value_at(config, f"{where}.initial_mean")
-        check.need(abs(mean) <= limit, f"{where}.initial_mean", rule)
+        law_path = place if place.startswith("food.") else path + place
+        rule = f"must be within ± {_limit_name(species, gene, prefix)}{limit:g}"
+        mean = value_at(config, f"{law_path}.initial_mean")
+        check.need(abs(mean) <= limit, f"{law_path}.initial_mean", rule)
 
 
 def _limit_name(species: SpeciesConfig, gene: Gene | None, path: str) -> str:
     """The setting that limits a gene, as "genome.weight_limit = "; "" if the limit follows from the gene's effect."""
-    own = species.genome.mutation.get(gene.name) if gene else None
-    if gene and gene.mutation.limit < (own.limit if own else species.genome.weight_limit):
+    mutation = species.genome.mutation.get(gene.name) if gene else None
+    if gene and gene.mutation.limit < (mutation.limit if mutation else species.genome.weight_limit):
         return ""
-    return f"{path}genome.mutation.{gene.name}.limit = " if gene and own else f"{path}genome.weight_limit = "
+    return f"{path}genome.mutation.{gene.name}.limit = " if gene and mutation else f"{path}genome.weight_limit = "
 
 
 def _crowd(check: Check, config: Settings) -> None:
@@ -338,10 +350,10 @@ def _crowd(check: Check, config: Settings) -> None:
     for name, species in config.species.items():
         if 2 * species.body.radius >= min(config.arena.width, config.arena.height):
             return  # already reported
-        each = math.pi * _founder_radius(species) ** 2
-        most = math.floor((room - area) / each)
-        area += species.population.initial_count * each
-        check.need(area <= room, paths[name], f"too many to place: the arena has room for {most}")
+        founder_area = math.pi * _founder_radius(species) ** 2
+        limit = math.floor((room - area) / founder_area)
+        area += species.population.initial_count * founder_area
+        check.need(area <= room, paths[name], f"too many to place: the arena has room for {limit}")
 
 
 def _founder_radius(species: SpeciesConfig) -> float:

@@ -25,10 +25,10 @@ def species_color(index: int) -> str:
 
 def food_colors(food_kinds: Sequence[str], wanted: Sequence[str] = ()) -> dict[str, str]:
     """Color of each food kind: the wanted one, or the next free one if another kind already has it."""
-    given = wanted if len(wanted) == len(food_kinds) else FOOD_COLORS[:1] * len(food_kinds)
+    preferred = wanted if len(wanted) == len(food_kinds) else FOOD_COLORS[:1] * len(food_kinds)
     colors: dict[str, str] = {}
-    for kind, color in zip(food_kinds, given, strict=True):
-        free = (each for each in FOOD_COLORS if each not in (*colors.values(), *given))
+    for kind, color in zip(food_kinds, preferred, strict=True):
+        free = (candidate for candidate in FOOD_COLORS if candidate not in (*colors.values(), *preferred))
         colors[kind] = next(free, color) if color in colors.values() else color
     return colors
 
@@ -41,9 +41,9 @@ def meal_colors(config: Settings, prey: Sequence[str] = ()) -> dict[str, str]:
 
 def weight_colors(names: Iterable[str], kinds: Mapping[str, str]) -> dict[str, str]:
     """Color of each weight: the color of what is eaten, or one for action, other rewards or neutral genes."""
-    others = iter(OTHER_COLORS * 8)
+    other_colors = iter(OTHER_COLORS * 8)
     colors = {}
     for name in names:
-        known = {"w_action": ACTION_COLOR}.get(name) or kinds.get(name.removeprefix("w_"))
-        colors[name] = known or (NEUTRAL_COLOR if name.startswith("neutral_") else next(others))
+        color = {"w_action": ACTION_COLOR}.get(name) or kinds.get(name.removeprefix("w_"))
+        colors[name] = color or (NEUTRAL_COLOR if name.startswith("neutral_") else next(other_colors))
     return colors

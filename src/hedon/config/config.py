@@ -35,7 +35,7 @@ class Config(Settings):
     @property
     def driven(self) -> tuple[str, ...]:
         """Species whose agents are controlled by a program."""
-        return tuple(name for name, each in self.species.items() if each.learning.policy == "external")
+        return tuple(name for name, species in self.species.items() if species.learning.policy == "external")
 
     def with_(self, path: str, value: Any) -> "Config":
         """Returns a checked copy of the config in which one setting has another value.
@@ -49,9 +49,9 @@ class Config(Settings):
         tables, names = asdict(self), parse_path(path)
         if not names:
             raise ConfigError(self.name, [Problem(repr(path), "must be the path of a setting, as in energy.initial")])
-        now = new_path(default_path(".".join(names)))
-        if now is not None:
-            raise ConfigError(self.name, [Problem(path, f"is called {now} now")])
+        current_path = new_path(default_path(".".join(names)))
+        if current_path is not None:
+            raise ConfigError(self.name, [Problem(path, f"is called {current_path} now")])
         roots = [["species", name] for name in tables["species"]] if names[0] in PER_SPECIES else [[]]
         kinds = list(tables["food"]) if names[:2] == ["food", EVERY] else []
         for root in [["food", kind] for kind in kinds] or roots:
@@ -83,9 +83,9 @@ def _said(value: Any) -> str:
 def _put(tables: dict[str, Any], names: list[str], value: Any) -> bool:
     """Sets a value in nested tables, if its place exists. A gene without a mutation table gets one."""
     for depth, name in enumerate(names[:-1]):
-        below = tables.get(name) if depth == 1 and names[0] in ("food", "species") else tables.setdefault(name, {})
-        if not isinstance(below, dict):
+        subtable = tables.get(name) if depth == 1 and names[0] in ("food", "species") else tables.setdefault(name, {})
+        if not isinstance(subtable, dict):
             return False
-        tables = below
+        tables = subtable
     tables[names[-1]] = value
     return True

@@ -36,19 +36,23 @@ def dump_toml(config: Settings, section: str | None = None) -> str:
     if section is None:
         head = f'{_HEAD}complete = true\nschema = "{SCHEMA}"\n'
         return head + "\n\n".join(text for _, text in tables) + "\n"
-    wanted = [
+    selected = [
         text
         for path, text in tables
-        if any(f"{each}.".startswith(f"{section}.") for each in (path, default_path(path)))
+        if any(f"{alias}.".startswith(f"{section}.") for alias in (path, default_path(path)))
     ]
-    if not section or not wanted:
+    if not section or not selected:
         raise KeyError(section)
-    return "\n\n".join(wanted) + "\n"
+    return "\n\n".join(selected) + "\n"
 
 
 def section_paths(config: Settings) -> list[str]:
     """Sections that `dump_toml` can write separately."""
-    species = (f"species.{name}{own}" for name in config.species for own in ("", *(f".{each}" for each in PER_SPECIES)))
+    species = (
+        f"species.{name}{suffix}"
+        for name in config.species
+        for suffix in ("", *(f".{section}" for section in PER_SPECIES))
+    )
     foods = (f"food.{kind}" for kind in config.food)
     return [*sections(Settings), *foods, *PER_SPECIES, *species]
 
@@ -58,10 +62,10 @@ def file_leaves(config: Settings) -> Iterator[tuple[str, Setting, Any]]:
 
     If the only species comes from a file without `[species]`, its paths are as in that file: `energy.initial`.
     """
-    unnamed = f"species.{ONLY}." if list(config.species) == [ONLY] else ""
+    prefix = f"species.{ONLY}." if list(config.species) == [ONLY] else ""
     for path, setting, value in leaves(config):
         if changes_worlds(path):
-            yield path.removeprefix(unnamed), setting, value
+            yield path.removeprefix(prefix), setting, value
 
 
 def flatten(config: Settings) -> dict[str, Any]:
@@ -88,13 +92,15 @@ class Fingerprint:
     """
 
     def __init__(self, config: Settings) -> None:
-        counted = (each for each in leaves(config) if changes_worlds(each[0]) and not each[0].endswith(".color"))
-        self._rows = {path: _row(path, value) for path, _, value in counted}
+        settings_of_worlds = (
+            leaf for leaf in leaves(config) if changes_worlds(leaf[0]) and not leaf[0].endswith(".color")
+        )
+        self._rows = {path: _row(path, value) for path, _, value in settings_of_worlds}
 
     def digest(self, values: Mapping[str, Any]) -> str:
         """Digest of the config with these values replaced; see the function `digest`."""
-        changed = {path: _row(path, value) for path, value in values.items() if path in self._rows}
-        rows = ", ".join(filter(None, (self._rows | changed).values()))
+        replaced = {path: _row(path, value) for path, value in values.items() if path in self._rows}
+        rows = ", ".join(filter(None, (self._rows | replaced).values()))
         return hashlib.sha256(f'{{"schema": {json.dumps(SCHEMA)}, "settings": [{rows}]}}'.encode()).hexdigest()
 
 
@@ -113,9 +119,9 @@ def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:
     Raises:
         ArgumentError: An argument is not a config.
     """
-    for name, each in (("a", a), ("b", b)):
-        if not isinstance(each, Settings):
-            raise ArgumentError(f"{name}: must be a Config, as `load_config` gives it, not {brief(repr(each))}")
+    for name, config in (("a", a), ("b", b)):
+        if not isinstance(config, Settings):
+            raise ArgumentError(f"{name}: must be a Config, as `load_config` gives it, not {brief(repr(config))}")
     left, right = flatten(a), flatten(b)
     kinds = [("food", tuple(a.food), tuple(b.food))] if list(a.food) != list(b.food) else []
     paths = dict.fromkeys([*left, *right])
@@ -130,5 +136,5 @@ def _tables(section: Any, path: str = "") -> Iterator[tuple[str, str]]:
         lines.append(f"{name} = {format_value(getattr(section, name))}  # {setting.doc.meaning}{unit}")
     if len(lines) > bool(path):
         yield path, "\n".join(lines)
-    for place, _, own in inner_sections(section, f"{path}." if path else ""):
-        yield from _tables(own, place)
+    for place, _, inner in inner_sections(section, f"{path}." if path else ""):
+        yield from _tables(inner, place)

@@ -59,29 +59,29 @@ def engine_config(config: Config) -> dict[str, Any]:
         if isinstance(value, _Path):
             return int(values[value]) if isinstance(values[value], bool) else values[value]
         if isinstance(value, dict):
-            return {name: filled(inner) for name, inner in value.items()}
-        return [filled(inner) for inner in value] if isinstance(value, list) else value
+            return {name: filled(item) for name, item in value.items()}
+        return [filled(item) for item in value] if isinstance(value, list) else value
 
     return filled(_tree(config))
 
 
 def engine_paths(config: Config) -> dict[str, list[str]]:
     """The engine's paths, such as `species[0].energy.initial`, for each path of a setting."""
-    found: dict[str, list[str]] = {}
+    paths: dict[str, list[str]] = {}
     for path, value in flat(_tree(config)):
         if isinstance(value, _Path):
-            found.setdefault(value, []).append(path)
-    return found
+            paths.setdefault(value, []).append(path)
+    return paths
 
 
 def flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """Flattens nested dicts and lists to values by path, such as `food[0].energy`."""
     if isinstance(value, dict):
-        for name, inner in value.items():
-            yield from flat(inner, f"{path}.{name}" if path else name)
+        for name, item in value.items():
+            yield from flat(item, f"{path}.{name}" if path else name)
     elif isinstance(value, list | tuple):
-        for i, inner in enumerate(value):
-            yield from flat(inner, f"{path}[{i}]")
+        for i, item in enumerate(value):
+            yield from flat(item, f"{path}[{i}]")
     else:
         yield path, value
 
@@ -98,20 +98,20 @@ def _tree(config: Config) -> dict[str, Any]:
 
 
 def _section(section: Any, path: str) -> dict[str, Any]:
-    made: dict[str, Any] = {name: _Path(path + name) for name in engine_settings(type(section))}
+    tree: dict[str, Any] = {name: _Path(path + name) for name in engine_settings(type(section))}
     for name, inner in engine_sections(type(section)).items():
-        below, place = getattr(section, name), f"{path}{name}."
+        content, place = getattr(section, name), f"{path}{name}."
         if inner.names:
-            every = {each: below.get(each) for each in inner.names}
-            made[name] = {
-                each: asdict(inner.type()) if own is None else _section(own, f"{place}{each}.")
-                for each, own in every.items()
+            values_by_name = {key: content.get(key) for key in inner.names}
+            tree[name] = {
+                key: asdict(inner.type()) if value is None else _section(value, f"{place}{key}.")
+                for key, value in values_by_name.items()
             }
         elif inner.repeated:
-            made[name] = [_section(own, f"{place}{each}.") for each, own in below.items()]
+            tree[name] = [_section(value, f"{place}{key}.") for key, value in content.items()]
         else:
-            made[name] = _section(below, place)
-    return made
+            tree[name] = _section(content, place)
+    return tree
 
 
 def _layout(config: Config, name: str) -> dict[str, Any]:
@@ -165,9 +165,9 @@ def _layout(config: Config, name: str) -> dict[str, Any]:
         "neighbors": [
             {
                 "types": sum(1 << number[each] for each in asked_for(config, query.of)),
-                "range": _Path(f"{path}neighbor.{asked}.range"),
+                "range": _Path(f"{path}neighbor.{query_name}.range"),
             }
-            for asked, query in species.neighbor.items()
+            for query_name, query in species.neighbor.items()
         ],
     }
 
@@ -182,11 +182,11 @@ def _channel(path: str, channel: Channel) -> dict[str, Any]:
     return {"source": channel.source, "index": channel.index, "scale": scale}
 
 
-def _of_stores(config: Config, what: str, stores: tuple[str, ...]) -> list[Any]:
+def _of_stores(config: Config, field: str, stores: tuple[str, ...]) -> list[Any]:
     """Amounts that each kind of food gives or needs, by kind, then by store."""
-    tables = {kind: getattr(food, what) for kind, food in config.food.items()}
+    tables = {kind: getattr(food, field) for kind, food in config.food.items()}
     return [
-        _Path(f"food.{kind}.{what}.{name}") if name in table else 0.0
+        _Path(f"food.{kind}.{field}.{name}") if name in table else 0.0
         for kind, table in tables.items()
         for name in stores
     ]
@@ -194,9 +194,12 @@ def _of_stores(config: Config, what: str, stores: tuple[str, ...]) -> list[Any]:
 
 def _gene(species: SpeciesConfig, path: str, gene: Gene) -> dict[str, Any]:
     law = gene.place if gene.place.startswith("food.") else path + gene.place
-    own = f"{path}genome.mutation.{gene.name}." if gene.name in species.genome.mutation else ""
+    mutation_path = f"{path}genome.mutation.{gene.name}." if gene.name in species.genome.mutation else ""
     return {
         "law": {name: _Path(f"{law}.{name}") for name in settings(GeneConfig)},
-        "mutation": {name: _Path(own + name if own else f"{path}genome.{OF_ALL_GENES[name]}") for name in OF_ALL_GENES},
+        "mutation": {
+            name: _Path(mutation_path + name if mutation_path else f"{path}genome.{OF_ALL_GENES[name]}")
+            for name in OF_ALL_GENES
+        },
         "most": gene.most,
     }

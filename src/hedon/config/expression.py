@@ -30,16 +30,16 @@ NO_GENE = {
 @cache
 def settable() -> Mapping[str, Setting]:
     """Numbers of a species that genes can set, by path; numbers of stores under `store.<kind>`."""
-    found: dict[str, Setting] = {}
+    numbers: dict[str, Setting] = {}
     for section, inner in engine_sections(SpeciesConfig).items():
         if section in NO_GENE or section == ENERGY:  # energy is one of the stores
             continue
         place = f"{section}.<kind>" if inner.repeated else section
-        for name, each in settings(inner.type).items():
-            known = name in engine_settings(inner.type) or f"{section}.{name}" in CONVERTED
-            if each.type is float and name not in NO_GENE and known:
-                found[f"{place}.{name}"] = each
-    return found
+        for name, setting in settings(inner.type).items():
+            reaches_engine = name in engine_settings(inner.type) or f"{section}.{name}" in CONVERTED
+            if setting.type is float and name not in NO_GENE and reaches_engine:
+                numbers[f"{place}.{name}"] = setting
+    return numbers
 
 
 def kind_of(path: str) -> str:
@@ -74,9 +74,9 @@ def of_mean_founders(species: SpeciesConfig) -> SpeciesConfig:
 def _put(section: Any, names: list[str], value: float) -> Any:
     if not names:
         return value
-    below = section[names[0]] if isinstance(section, dict) else getattr(section, names[0])
-    changed = {names[0]: _put(below, names[1:], value)}
-    return section | changed if isinstance(section, dict) else replace(section, **changed)
+    child = section[names[0]] if isinstance(section, dict) else getattr(section, names[0])
+    changes = {names[0]: _put(child, names[1:], value)}
+    return section | changes if isinstance(section, dict) else replace(section, **changes)
 
 
 def expressed(species: SpeciesConfig, path: str, gene: "float | NDArray[np.float32]") -> Any:

@@ -111,9 +111,9 @@ class Setting:
 
 def type_name(kind: Any) -> str:
     """A type in words: "a number", "a list of [number, number]"."""
-    plain = {float: "a number", int: "an integer", str: "a text", bool: "true or false"}
-    if kind in plain:
-        return plain[kind]
+    words = {float: "a number", int: "an integer", str: "a text", bool: "true or false"}
+    if kind in words:
+        return words[kind]
     if get_origin(kind) is dict:
         return "a table of numbers"
     items = get_args(kind)
@@ -145,9 +145,12 @@ def section(
 @cache
 def settings(section: type) -> Mapping[str, Setting]:
     """Settings of a section by name, in order, without inner sections."""
-    hints, own = get_type_hints(section), (each for each in fields(section) if "doc" in each.metadata)
+    hints, setting_fields = get_type_hints(section), (each for each in fields(section) if "doc" in each.metadata)
     return MappingProxyType(
-        {each.name: Setting(each.name, hints[each.name], _default(each), each.metadata["doc"]) for each in own}
+        {
+            each.name: Setting(each.name, hints[each.name], _default(each), each.metadata["doc"])
+            for each in setting_fields
+        }
     )
 
 
@@ -158,14 +161,14 @@ def _default(each: Field[Any]) -> Any:
 @cache
 def sections(section: type) -> Mapping[str, Section]:
     """Inner sections by name, in order."""
-    hints, found = get_type_hints(section), {}
+    hints, result = get_type_hints(section), {}
     for each in fields(section):
         if "section" in each.metadata:
             kind = hints[each.name]
             repeated = get_origin(kind) is dict
             inner = get_args(kind)[1] if repeated else kind
-            found[each.name] = Section(inner, repeated, *each.metadata["section"])
-    return MappingProxyType(found)
+            result[each.name] = Section(inner, repeated, *each.metadata["section"])
+    return MappingProxyType(result)
 
 
 def number_of(table: Setting, name: str) -> Setting:
@@ -180,8 +183,8 @@ def engine_settings(section: type) -> Mapping[str, Setting]:
     def has_text(kind: Any) -> bool:
         return kind is str or any(map(has_text, get_args(kind)))
 
-    own = settings(section).items()
-    return {name: each for name, each in own if not each.doc.derived and (each.choices or not has_text(each.type))}
+    items = settings(section).items()
+    return {name: each for name, each in items if not each.doc.derived and (each.choices or not has_text(each.type))}
 
 
 def engine_sections(section: type) -> Mapping[str, Section]:
@@ -199,8 +202,8 @@ def value_at(section: Any, path: str) -> Any:
     if not path:
         return section
     if not isinstance(section, dict):
-        name, _, rest = path.partition(".")
-        return value_at(getattr(section, name), rest)
+        name, _, remainder = path.partition(".")
+        return value_at(getattr(section, name), remainder)
     # Names of users' sections may contain dots until they are refused.
     name = max((each for each in section if f"{path}.".startswith(f"{each}.")), key=len)
     return value_at(section[name], path[len(name) + 1 :])
@@ -209,9 +212,9 @@ def value_at(section: Any, path: str) -> Any:
 def inner_sections(section: Any, path: str = "") -> Iterator[tuple[str, Section, Any]]:
     """Yields every section directly inside a section, or inside a table of it, with its path, in order."""
     for name, inner in sections(type(section)).items():
-        below = getattr(section, name)
-        for each, own in below.items() if inner.repeated else [("", below)]:
-            yield f"{path}{name}.{each}" if inner.repeated else f"{path}{name}", inner, own
+        content = getattr(section, name)
+        for each, value in content.items() if inner.repeated else [("", content)]:
+            yield f"{path}{name}.{each}" if inner.repeated else f"{path}{name}", inner, value
 
 
 def leaves(section: Any, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
@@ -226,5 +229,5 @@ def leaves(section: Any, path: str = "") -> Iterator[tuple[str, Setting, Any]]:
                 yield f"{path}{name}.{each}", number_of(setting, each), number
         else:
             yield f"{path}{name}", setting, value
-    for place, _, own in inner_sections(section, path):
-        yield from leaves(own, f"{place}.")
+    for place, _, inner in inner_sections(section, path):
+        yield from leaves(inner, f"{place}.")

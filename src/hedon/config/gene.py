@@ -13,11 +13,11 @@ def gene_of(config: Settings, column: str) -> Gene:
 
 def limits_of(config: Settings, columns: Iterable[str]) -> dict[str, float]:
     """Absolute limit of each gene, by column; if a column names no species, the smallest among species that have it."""
-    made = layouts(config)
-    return {column: min(gene.mutation.limit for gene in _genes(made, column)) for column in columns}
+    layouts_by_species = layouts(config)
+    return {column: min(gene.mutation.limit for gene in _genes(layouts_by_species, column)) for column in columns}
 
 
-def _genes(made: Mapping[str, SpeciesLayout], column: str) -> list[Gene]:
+def _genes(layouts_by_species: Mapping[str, SpeciesLayout], column: str) -> list[Gene]:
     species, _, name = column.rpartition(".")
-    wanted = [made[species]] if species else made.values()
-    return [gene for layout in wanted for gene in layout.genes if gene.name == name]
+    selected = [layouts_by_species[species]] if species else layouts_by_species.values()
+    return [gene for layout in selected for gene in layout.genes if gene.name == name]

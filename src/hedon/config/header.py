@@ -48,44 +48,44 @@ def _room() -> Iterator[str]:
 
 
 def _structs() -> Iterator[str]:
-    made: dict[str, list[str]] = {}
+    structs: dict[str, list[str]] = {}
     for root in (GeneConfig, MutationConfig, Settings):  # layouts contain gene laws and mutations
-        _add(root, made)
-    for lines in made.values():
+        _add(root, structs)
+    for lines in structs.values():
         yield from lines
     yield f"HEDON_ENUM(GenomeLearning, {', '.join(LEARNING_GENES)})"
     yield f"HEDON_ENUM(GenomeFamily, {', '.join(FAMILY_GENES)})"
     yield f"HEDON_ENUM(RuleUse, {', '.join(RULE_USES)})"
     several = {name: source.several for name, source in SOURCES.items()} | {LAST: LAST}
     words = ("one", "two", *SEVERAL, LAST)
-    each = ", ".join(f"ChannelOf::{word}" for word in several.values())
+    channels_of = ", ".join(f"ChannelOf::{word}" for word in several.values())
     yield _wrapped(f"HEDON_ENUM(ChannelSource, {', '.join(several)})")
     yield _wrapped(f"HEDON_ENUM(ChannelOf, {', '.join(words)})")
-    yield _wrapped(f"inline constexpr ChannelOf CHANNEL_OF[] = {{{each}}};") + "\n"
+    yield _wrapped(f"inline constexpr ChannelOf CHANNEL_OF[] = {{{channels_of}}};") + "\n"
 
 
-def _add(section: type, made: dict[str, list[str]]) -> str:
+def _add(section: type, structs: dict[str, list[str]]) -> str:
     """Adds the struct of a section after the structs of its inner sections; returns its name."""
     if is_dataclass(section.__base__):  # same settings, other defaults
-        return _add(section.__base__, made)
+        return _add(section.__base__, structs)
     name = section.__name__
-    own, enums, members = name.removesuffix("Config"), [], []
+    prefix, enums, members = name.removesuffix("Config"), [], []
     for setting in engine_settings(section).values():
         kind = _type(setting)
         if setting.choices:
-            kind = own + _camel(setting.name)
+            kind = prefix + _camel(setting.name)
             enums.append(f"HEDON_ENUM({kind}, {', '.join(setting.choices)})")
         members.append((kind, setting.name, _limit(setting), setting.doc.unit))
     for place, inner in engine_sections(section).items():
-        kind = _add(inner.type, made)
+        kind = _add(inner.type, structs)
         if inner.names:
-            names = [(kind, each, f"Limit::from(0, {factor:.10g})", "") for each, factor in inner.names.items()]
-            kind = own + _camel(place)
-            made[kind] = _struct(kind, names)
+            names = [(kind, key, f"Limit::from(0, {factor:.10g})", "") for key, factor in inner.names.items()]
+            kind = prefix + _camel(place)
+            structs[kind] = _struct(kind, names)
         elif inner.repeated:
             kind = f"FixedList<{kind}, {inner.most}>"
         members.append((kind, place, "Limit()", ""))
-    made[name] = [*enums, *_struct(name, members)]
+    structs[name] = [*enums, *_struct(name, members)]
     return name
 
 

@@ -38,17 +38,17 @@ def settle_food(tables: Table) -> Iterator[Problem]:
     if list(food) == [EVERY]:  # it applies to no kind
         del tables["food"]
         return
-    every = food.pop(EVERY, {})
-    if not isinstance(every, dict):
-        yield Problem(f'food."{EVERY}"', "must be a table", format_value(every))
-    others = [name for name, other in food.items() if isinstance(other, dict) and "gives" in other]
+    defaults = food.pop(EVERY, {})
+    if not isinstance(defaults, dict):
+        yield Problem(f'food."{EVERY}"', "must be a table", format_value(defaults))
+    kinds = [name for name, table in food.items() if isinstance(table, dict) and "gives" in table]
     for kind, value in list(food.items()):
         if value is False:
             del food[kind]
         elif isinstance(value, dict) and "gives" not in value:
-            known = ", ".join(others) or "none"
-            message = f"there is no such kind of food (known: {known}); a new kind must say what it gives"
-            yield Problem(f"food.{kind}", message, nearest=nearest(kind, others))
+            listing = ", ".join(kinds) or "none"
+            message = f"there is no such kind of food (known: {listing}); a new kind must say what it gives"
+            yield Problem(f"food.{kind}", message, nearest=nearest(kind, kinds))
             del food[kind]
 
 
@@ -63,27 +63,31 @@ def settle_species(tables: Table, layers: Sequence[Table]) -> Iterator[Problem]:
     if not isinstance(species, dict):
         yield Problem("species", "must be a table", format_value(species))
         return
-    owners = {name: own for name, own in species.items() if isinstance(own, dict)}
+    owners = {name: table for name, table in species.items() if isinstance(table, dict)}
     yield from _unreached(owners, layers)
-    for name, own in list(species.items()):
-        if own is False:
+    for name, table in list(species.items()):
+        if table is False:
             del species[name]
-        elif not isinstance(own, dict):
-            yield Problem(f"species.{name}", "must be a table", format_value(own))
+        elif not isinstance(table, dict):
+            yield Problem(f"species.{name}", "must be a table", format_value(table))
         else:
-            species[name] = _lay(common, own)
+            species[name] = _lay(common, table)
     if not species:
         species[ONLY] = common
 
 
 def _unreached(owners: dict[str, Table], layers: Sequence[Table]) -> Iterator[Problem]:
     for i, layer in enumerate(layers) if owners else ():
-        over = stack(layers[i:]).get("species", {})
+        upper_species = stack(layers[i:]).get("species", {})
         for path, value in _flat({name: layer[name] for name in PER_SPECIES if name in layer}):
-            if all(has(own, path) for own in owners.values()) and not all(has(over, (each, *path)) for each in owners):
+            if all(has(table, path) for table in owners.values()) and not all(
+                has(upper_species, (owner, *path)) for owner in owners
+            ):
                 name = ".".join(path)
-                said = " and ".join(f"species.{each}.{name}" for each in owners)
-                yield Problem(name, f"changes nothing, since each species has its own: set {said}", format_value(value))
+                alternatives = " and ".join(f"species.{owner}.{name}" for owner in owners)
+                yield Problem(
+                    name, f"changes nothing, since each species has its own: set {alternatives}", format_value(value)
+                )
 
 
 def _flat(table: Table, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
@@ -99,8 +103,8 @@ def with_defaults(complete: Table) -> Table:
     species = complete.get("species")
     if not isinstance(species, dict) or len(species) != 1:
         return complete
-    name, own = next(iter(species.items()))
-    return complete | own | {"species": {name: {}}} if isinstance(own, dict) else complete
+    name, species_table = next(iter(species.items()))
+    return complete | species_table | {"species": {name: {}}} if isinstance(species_table, dict) else complete
 
 
 def has(table: Any, path: Sequence[str]) -> bool:
@@ -128,11 +132,11 @@ def settle_genes(tables: Table) -> None:
             genome["set"] = laws
         if not isinstance(genome, dict) or not isinstance(genome.get("mutation"), dict):
             continue
-        common = {name: genome[whole] for name, whole in OF_ALL_GENES.items() if whole in genome}
+        common = {name: genome[default_name] for name, default_name in OF_ALL_GENES.items() if default_name in genome}
         genome["mutation"] = {
-            gene: _lay(common, own) if isinstance(own, dict) else own
-            for gene, own in genome["mutation"].items()
-            if own is not False
+            gene: _lay(common, mutation) if isinstance(mutation, dict) else mutation
+            for gene, mutation in genome["mutation"].items()
+            if mutation is not False
         }
 
 
@@ -147,43 +151,48 @@ def _laws(table: Table, path: str = "") -> Iterator[tuple[str, Any]]:
 def settle_stores_and_queries(tables: Table) -> Iterator[Problem]:
     """Removes stores and queries set to false from each species; removes and reports stores without a capacity."""
     species = tables.get("species")
-    for name, own in species.items() if isinstance(species, dict) else ():
-        if not isinstance(own, dict):
+    for name, species_table in species.items() if isinstance(species, dict) else ():
+        if not isinstance(species_table, dict):
             continue
         for section in ("neighbor", "store"):
-            if isinstance(own.get(section), dict):
-                own[section] = {each: value for each, value in own[section].items() if value is not False}
-        kept = own.get("store")
-        if not isinstance(kept, dict):
+            if isinstance(species_table.get(section), dict):
+                species_table[section] = {
+                    entry: value for entry, value in species_table[section].items() if value is not False
+                }
+        stores = species_table.get("store")
+        if not isinstance(stores, dict):
             continue
-        if ENERGY in kept:
+        if ENERGY in stores:
             message = "is every species' own store: set it in the section energy, and give another name to a new one"
             yield Problem(f"species.{name}.store.{ENERGY}", message)
-            del kept[ENERGY]
-        known = [store for store, value in kept.items() if isinstance(value, dict) and "capacity" in value]
-        for store, value in list(kept.items()):
-            if isinstance(value, dict) and store not in known:
+            del stores[ENERGY]
+        names = [store for store, value in stores.items() if isinstance(value, dict) and "capacity" in value]
+        for store, value in list(stores.items()):
+            if isinstance(value, dict) and store not in names:
                 message = (
-                    f"there is no such store (known: {', '.join(known) or 'none'}); a new one must say its capacity"
+                    f"there is no such store (known: {', '.join(names) or 'none'}); a new one must say its capacity"
                 )
-                yield Problem(f"species.{name}.store.{store}", message, nearest=nearest(store, known))
-                del kept[store]
+                yield Problem(f"species.{name}.store.{store}", message, nearest=nearest(store, names))
+                del stores[store]
 
 
-def _lay(base: Any, over: Any) -> Any:
+def _lay(base: Any, overlay: Any) -> Any:
     """Merges two values: tables merge recursively; otherwise the later value wins."""
-    if not isinstance(base, dict) or not isinstance(over, dict):
-        return over
-    return base | {name: _lay(base.get(name), value) for name, value in over.items()}
+    if not isinstance(base, dict) or not isinstance(overlay, dict):
+        return overlay
+    return base | {name: _lay(base.get(name), value) for name, value in overlay.items()}
 
 
-def _lay_food(base: Table, over: Table) -> Table:
-    every = over.get(EVERY, {})
-    known = isinstance(every, dict)  # otherwise it is refused later
-    merged = {name: _lay(below, every) if known and isinstance(below, dict) else below for name, below in base.items()}
-    merged[EVERY] = _lay(base.get(EVERY, {}), every)
-    for kind, value in over.items():
+def _lay_food(base: Table, overlay: Table) -> Table:
+    defaults = overlay.get(EVERY, {})
+    is_table = isinstance(defaults, dict)  # otherwise it is refused later
+    merged = {
+        name: _lay(kind_table, defaults) if is_table and isinstance(kind_table, dict) else kind_table
+        for name, kind_table in base.items()
+    }
+    merged[EVERY] = _lay(base.get(EVERY, {}), defaults)
+    for kind, value in overlay.items():
         if kind != EVERY:
-            below = merged.get(kind)
-            merged[kind] = _lay(below if isinstance(below, dict) else merged[EVERY], value)
+            kind_table = merged.get(kind)
+            merged[kind] = _lay(kind_table if isinstance(kind_table, dict) else merged[EVERY], value)
     return merged

@@ -155,9 +155,9 @@ def rule_columns(config: Settings, name: str, use: str = "reward") -> tuple[str,
     """
     layout, memory = layout_of(config, config.species[name]), config.species[name].reward.memory
     inputs = (term.name for term in layout.terms)
-    own = "linear" if use == "reward" else "chance"
+    computed = "linear" if use == "reward" else "chance"
     channels = (channel.name for channel in layout.recorded)
-    return (*inputs, *layout.gene_names, *channels, own, *(f"memory_{i + 1}" for i in range(memory)))
+    return (*inputs, *layout.gene_names, *channels, computed, *(f"memory_{i + 1}" for i in range(memory)))
 
 
 def choose_species(name: str | None, config: Settings) -> str:
@@ -166,12 +166,12 @@ def choose_species(name: str | None, config: Settings) -> str:
     Raises:
         ArgumentError: The species does not exist.
     """
-    known = list(config.species)
-    if name is not None and name not in known:
-        near = nearest(name, known)
-        hint = f"; did you mean {near}?" if near else ""
-        raise ArgumentError(f"species {brief(name)!r}: there is no such species (there are {', '.join(known)}){hint}")
-    return known[0] if name is None else name
+    names = list(config.species)
+    if name is not None and name not in names:
+        suggestion = nearest(name, names)
+        hint = f"; did you mean {suggestion}?" if suggestion else ""
+        raise ArgumentError(f"species {brief(name)!r}: there is no such species (there are {', '.join(names)}){hint}")
+    return names[0] if name is None else name
 
 
 def set_point_of(store: str) -> str:
@@ -191,7 +191,7 @@ class _Layout:
     def add_gene(self, name: str, role: str, meaning: str, place: str) -> None:
         genome = self.species.genome
         law = value_at(self.config if place.startswith("food.") else self.species, place)
-        common = {own: getattr(genome, whole) for own, whole in OF_ALL_GENES.items()}
+        common = {setting: getattr(genome, default_name) for setting, default_name in OF_ALL_GENES.items()}
         mutation = genome.mutation.get(name, MutationConfig(**common))
         most = _most(self.species.reward.family, role, name)
         limited = replace(mutation, limit=min(mutation.limit, most))
@@ -227,48 +227,52 @@ def _most(family: str, role: str, name: str) -> float:
 
 def layout_of(config: Settings, species: SpeciesConfig) -> SpeciesLayout:
     """Layouts of one species. All channels that its reward uses must exist."""
-    made, genome, reward = _Layout(config, species), species.genome, species.reward
-    eaten, known = diet(config, species), made.known
+    layout, genome, reward = _Layout(config, species), species.genome, species.reward
+    eaten, channels = diet(config, species), layout.known
     for meal, name in enumerate((*config.food, *config.species)):
         if name in eaten:
             food = name in config.food
-            what, law = (f"a food of kind {name}", f"food.{name}.gene") if food else (f"eating a {name}", "genome.prey")
-            made.add_term(name, known["meals", meal], what, law, "reward.meal_coef")
+            description, law = (
+                (f"a food of kind {name}", f"food.{name}.gene") if food else (f"eating a {name}", "genome.prey")
+            )
+            layout.add_term(name, channels["meals", meal], description, law, "reward.meal_coef")
     effort = "effort" if reward.action_norm == "max_force" else "force_norm"
-    made.add_term("action", known[effort, 0], "motor action", "genome.action", "reward.action_coef")
+    layout.add_term("action", channels[effort, 0], "motor action", "genome.action", "reward.action_coef")
     for name, pay in reward.pay.items():
-        (paid,), place = called(known, pay.channel or name), f"reward.pay.{name}"
-        made.add_term(name, paid, paid.meaning, f"{place}.gene", f"{place}.coef")
+        (paid,), place = called(channels, pay.channel or name), f"reward.pay.{name}"
+        layout.add_term(name, paid, paid.meaning, f"{place}.gene", f"{place}.coef")
     if reward.drive_reduction_coef:
         for name, store in species.stores.items():
             measure = "motor_threshold" if store.motor_threshold else "capacity"
             place = f"{name if name == ENERGY else f'store.{name}'}.set_point"
-            made.add_gene(set_point_of(name), "reward", f"{name} that it seeks, as a share of its {measure}", place)
-        coef, paid = "reward.drive_reduction_coef", known["drive_reduction", 0]
-        made.terms.append(RewardTerm(paid.name, paid, "", "", reward.drive_reduction_coef, coef))
+            layout.add_gene(set_point_of(name), "reward", f"{name} that it seeks, as a share of its {measure}", place)
+        coef, paid = "reward.drive_reduction_coef", channels["drive_reduction", 0]
+        layout.terms.append(RewardTerm(paid.name, paid, "", "", reward.drive_reduction_coef, coef))
     for name in genome.family:
-        made.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], f"genome.family.{name}")
+        layout.add_gene(f"g_{name}", "reward", FAMILY_GENES[name], f"genome.family.{name}")
     for name in genome.learning:
-        made.add_gene(f"g_{name}", "learning", LEARNING_GENES[name], f"genome.learning.{name}")
+        layout.add_gene(f"g_{name}", "learning", LEARNING_GENES[name], f"genome.learning.{name}")
     for place in genome.set:
         meaning = f"power of ten by which {place} differs"
-        made.add_gene(gene_column(place), "setting", meaning, f"genome.set.{place}")
+        layout.add_gene(gene_column(place), "setting", meaning, f"genome.set.{place}")
     for name in genome.extra:
-        made.add_gene(f"{EXTRA}{name}", "rule", f"{name}, for rules in Python", f"genome.extra.{name}")
+        layout.add_gene(f"{EXTRA}{name}", "rule", f"{name}, for rules in Python", f"genome.extra.{name}")
     for i in range(genome.neutral_count):
         meaning = "neutral gene: inherited and mutated, no effect"
-        made.add_gene(f"neutral_{i + 1}", "neutral", meaning, "genome.neutral")
-    observed, last = observed_channels(species, known)
-    paid = {(term.name, term.channel) for term in made.terms}
+        layout.add_gene(f"neutral_{i + 1}", "neutral", meaning, "genome.neutral")
+    observed, last = observed_channels(species, channels)
+    paid = {(term.name, term.channel) for term in layout.terms}
     return SpeciesLayout(
-        genes=tuple(made.genes),
-        terms=tuple(made.terms),
+        genes=tuple(layout.genes),
+        terms=tuple(layout.terms),
         sees=seen(config, species.sensor.sees),
         touches=chosen(config, species.body.collides),
         smells=smelled(config, species.sensor.smells),
         stores=tuple(species.stores),
         observed=observed,
         last=last,
-        recorded=tuple(each for each in recorded_channels(species, known) if (each.name, each) not in paid),
-        gate=called(known, reward.gate)[0],
+        recorded=tuple(
+            channel for channel in recorded_channels(species, channels) if (channel.name, channel) not in paid
+        ),
+        gate=called(channels, reward.gate)[0],
     )

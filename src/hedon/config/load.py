@@ -73,27 +73,29 @@ def load_config(source: str | Path, fidelity: str | None = None, overrides: Iter
     """
     texts = override_texts(overrides)
     path = _path_of(source)
-    own = {"preset": source} if path is None else read_toml(path)
-    return _config_of(own, path, fidelity, texts)
+    tables = {"preset": source} if path is None else read_toml(path)
+    return _config_of(tables, path, fidelity, texts)
 
 
 def _config_of(tables: Table, path: Path | None, fidelity: str | None = None, texts: Sequence[str] = ()) -> Config:
     """Config from a file's tables; without a path, the tables only name a preset."""
     origin = str(path or tables["preset"])
-    own = tables if path is None else with_absolute_rules(tables, path.parent)
-    over = [parse_override(text) for text in texts]
-    problems = [item for item in over if isinstance(item, Problem)]
-    changes = [with_absolute_rules(item, Path()) for item in over if not isinstance(item, Problem)]
+    file_tables = tables if path is None else with_absolute_rules(tables, path.parent)
+    parsed = [parse_override(text) for text in texts]
+    problems = [item for item in parsed if isinstance(item, Problem)]
+    changes = [with_absolute_rules(item, Path()) for item in parsed if not isinstance(item, Problem)]
     require_plain(changes, f"{origin}, with changes")
-    for name in [each for table in changes for each in table if each in ("preset", "fidelity", "complete")]:
-        other = "--fidelity" if name == "fidelity" else "the preset or file itself"
-        problems.append(Problem(name, f"is not a setting: give it with {other}"))
+    for name in [key for table in changes for key in table if key in ("preset", "fidelity", "complete")]:
+        option = "--fidelity" if name == "fidelity" else "the preset or file itself"
+        problems.append(Problem(name, f"is not a setting: give it with {option}"))
     unknown: list[Problem] = []
-    below = _layers_below(own, fidelity, unknown)
+    lower_layers = _layers_below(file_tables, fidelity, unknown)
     if unknown:  # without a valid preset and fidelity nothing else can be checked
         raise ConfigError(origin, [*problems, *unknown])
     name = {"name": origin if path is None else _name_of(path)}
-    return _from_layers([name, *below], [own, *changes], f"{origin}, with changes" if changes else origin, problems)
+    return _from_layers(
+        [name, *lower_layers], [file_tables, *changes], f"{origin}, with changes" if changes else origin, problems
+    )
 
 
 def load_config_text(text: str, path: Path) -> Config:
@@ -133,8 +135,8 @@ def changed_settings(config: Config) -> list[tuple[str, Any, Any]]:
         return []
     preset = load_config(config.preset, config.fidelity)
     if len(preset.species) == 1 and not preset.species.keys() & config.species.keys():
-        (only,) = preset.species.values()
-        preset = replace(preset, species=dict.fromkeys(config.species, only))
+        (species_config,) = preset.species.values()
+        preset = replace(preset, species=dict.fromkeys(config.species, species_config))
     return diff(preset, config)
 
 
@@ -167,8 +169,8 @@ def override_texts(overrides: Iterable[str]) -> list[str]:
 
 def _name_of(path: Path) -> str:
     """Default name of a run: the config file's name, reduced to characters that are valid in any folder name."""
-    plain = unicodedata.normalize("NFKD", path.stem).encode("ascii", "ignore").decode()
-    return re.sub(r"[^A-Za-z0-9._-]+", "-", plain).strip(".-")[:80] or "config"
+    ascii_name = unicodedata.normalize("NFKD", path.stem).encode("ascii", "ignore").decode()
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", ascii_name).strip(".-")[:80] or "config"
 
 
 def _path_of(source: str | Path) -> Path | None:
@@ -178,68 +180,77 @@ def _path_of(source: str | Path) -> Path | None:
     if isinstance(source, Path) or source.endswith(".toml") or "/" in source:
         return Path(source)
     if source not in PRESETS:
-        near = nearest(source, [path.name for path in Path().glob("*.toml")], MISTYPED)
-        if near is not None and nearest(source, PRESETS, MISTYPED) is None:
+        suggestion = nearest(source, [path.name for path in Path().glob("*.toml")], MISTYPED)
+        if suggestion is not None and nearest(source, PRESETS, MISTYPED) is None:
             raise ConfigError(
-                source, [Problem("", "there is no such preset, and a file's name ends with .toml", None, near)]
+                source, [Problem("", "there is no such preset, and a file's name ends with .toml", None, suggestion)]
             )
-        near = nearest(source, PRESETS)
-        known = "" if near else f" (there are {', '.join(PRESETS)}); a file's name ends with .toml"
-        raise ConfigError(source, [Problem("", f"there is no such preset{known}", nearest=near)])
+        suggestion = nearest(source, PRESETS)
+        listing = "" if suggestion else f" (there are {', '.join(PRESETS)}); a file's name ends with .toml"
+        raise ConfigError(source, [Problem("", f"there is no such preset{listing}", nearest=suggestion)])
     return None
 
 
-def _layers_below(own: Table, fidelity: str | None, problems: list[Problem]) -> list[Table]:
-    """Layers below a file; also sets the preset and fidelity in `own`."""
-    if own.get("complete") is True:
-        if fidelity not in (None, own.get("fidelity")):
+def _layers_below(tables: Table, fidelity: str | None, problems: list[Problem]) -> list[Table]:
+    """Layers below a file; also sets the preset and fidelity in `tables`."""
+    if tables.get("complete") is True:
+        if fidelity not in (None, tables.get("fidelity")):
             message = "the file already has all settings, so a fidelity changes none; start from its preset instead"
             problems.append(Problem("--fidelity", message, fidelity))
         return []
-    if "complete" in own:
-        problems.append(Problem("complete", "must be true or left out", format_value(own["complete"])))
-    own["fidelity"] = fidelity or own.get("fidelity", DEFAULT_FIDELITY)
-    own.setdefault("preset", DEFAULT_PRESET)
+    if "complete" in tables:
+        problems.append(Problem("complete", "must be true or left out", format_value(tables["complete"])))
+    tables["fidelity"] = fidelity or tables.get("fidelity", DEFAULT_FIDELITY)
+    tables.setdefault("preset", DEFAULT_PRESET)
     for field, names in (("preset", PRESETS), ("fidelity", FIDELITIES)):
-        value = own[field]
+        value = tables[field]
         if value not in names:
-            near = FIDELITY_NOW.get(value) or nearest(value, names) if isinstance(value, str) else None
-            problems.append(Problem(field, "must be one of " + ", ".join(names), format_value(value), near))
+            suggestion = FIDELITY_NOW.get(value) or nearest(value, names) if isinstance(value, str) else None
+            problems.append(Problem(field, "must be one of " + ", ".join(names), format_value(value), suggestion))
     if problems:
         return []
-    preset, name = own["preset"], own["fidelity"]
+    preset, name = tables["preset"], tables["fidelity"]
     return [*_preset_layers(preset), _settings_of(_FOLDER / "overlays" / f"{name}.toml"), *_own_fidelity(preset, name)]
 
 
-def _mistyped_species(below: Table, overrides: list[Table]) -> list[Problem]:
+def _mistyped_species(lower_tables: Table, overrides: list[Table]) -> list[Problem]:
     """Problems for species in overrides whose names are almost those of existing species.
 
     A new species replaces a single unnamed one, so a misspelled name would leave no other species.
     """
-    known = below.get("species")
-    there = list(known) if isinstance(known, dict) and known else [ONLY]
-    named = [each["species"] for each in overrides if isinstance(each.get("species"), dict)]
-    new = [name for name in dict.fromkeys(name for each in named for name in each) if name not in there]
+    species = lower_tables.get("species")
+    existing = list(species) if isinstance(species, dict) and species else [ONLY]
+    overridden = [table["species"] for table in overrides if isinstance(table.get("species"), dict)]
+    added = [name for name in dict.fromkeys(name for table in overridden for name in table) if name not in existing]
     message = "there is no such species; a new one of so close a name goes into a file"
     return [
-        Problem(f"species.{name}", message, nearest=near) for name in new if (near := nearest(name, there, MISTYPED))
+        Problem(f"species.{name}", message, nearest=suggestion)
+        for name in added
+        if (suggestion := nearest(name, existing, MISTYPED))
     ]
 
 
-def _from_layers(below: list[Table], above: list[Table], origin: str, found: Sequence[Problem] = ()) -> Config:
-    """Config from layers of tables, lowest first; `above` are the user's layers: a file, then overrides.
+def _from_layers(
+    lower_layers: list[Table], user_layers: list[Table], origin: str, known_problems: Sequence[Problem] = ()
+) -> Config:
+    """Config from layers of tables, lowest first; `user_layers` are the user's layers: a file, then overrides.
 
-    Problems in `found` are reported with the others.
+    Problems in `known_problems` are reported with the others.
     """
-    found = [*found, *(problem for layer in above for problem in renamed(layer))]
-    complete = above[0].get("complete") is True
-    above = [with_defaults(above[0]) if complete else above[0], *above[1:]]
-    merged = stack([*below, *above])
-    mistyped = _mistyped_species(stack([*below, above[0]]), above[1:])
-    problems = [*mistyped, *_schema_problems(merged, complete), *settle_food(merged), *settle_species(merged, above)]
+    known_problems = [*known_problems, *(problem for layer in user_layers for problem in renamed(layer))]
+    complete = user_layers[0].get("complete") is True
+    user_layers = [with_defaults(user_layers[0]) if complete else user_layers[0], *user_layers[1:]]
+    merged = stack([*lower_layers, *user_layers])
+    mistyped = _mistyped_species(stack([*lower_layers, user_layers[0]]), user_layers[1:])
+    problems = [
+        *mistyped,
+        *_schema_problems(merged, complete),
+        *settle_food(merged),
+        *settle_species(merged, user_layers),
+    ]
     problems += settle_stores_and_queries(merged)
     settle_genes(merged)
-    config = build(Config, merged, origin, [*found, *folded(problems, _species_of(merged))])
+    config = build(Config, merged, origin, [*known_problems, *folded(problems, _species_of(merged))])
     if complete:
         _require_complete(config, merged, origin)
     return config
@@ -282,17 +293,17 @@ def _says(tables: Table, path: str) -> bool:
 
 def _preset_layers(name: str) -> list[Table]:
     """A preset and the presets that it is based on, lowest first."""
-    return [{key: value for key, value in own.items() if key not in FIDELITIES} for own in _preset_files(name)]
+    return [{key: value for key, value in tables.items() if key not in FIDELITIES} for tables in _preset_files(name)]
 
 
 def _own_fidelity(preset: str, fidelity: str) -> list[Table]:
     """Settings that a preset and its base presets add to a fidelity's own, lowest first."""
-    return [own[fidelity] for own in _preset_files(preset) if fidelity in own]
+    return [tables[fidelity] for tables in _preset_files(preset) if fidelity in tables]
 
 
 def _preset_files(name: str) -> list[Table]:
-    own = _settings_of(_FOLDER / "presets" / f"{name}.toml")
-    return [*(_preset_files(own["preset"]) if "preset" in own else []), own]
+    tables = _settings_of(_FOLDER / "presets" / f"{name}.toml")
+    return [*(_preset_files(tables["preset"]) if "preset" in tables else []), tables]
 
 
 def _settings_of(path: Path) -> Table:

@@ -32,14 +32,14 @@ def parse_override(text: str) -> Table | Problem:
 
 def parse_path(path: str) -> list[str]:
     """Names in a path, without quotes; empty for an invalid path."""
-    names, at = [], 0
-    while match := _PART.match(path, at):
+    names, position = [], 0
+    while match := _PART.match(path, position):
         names.append(match[1] or match[2])
         if match.end() == len(path):
             return names
         if path[match.end()] != ".":
             return []
-        at = match.end() + 1
+        position = match.end() + 1
     return []
 
 

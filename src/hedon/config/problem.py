@@ -58,8 +58,8 @@ class ConfigError(HedonError):
         if count == 1:
             super().__init__(f"{brief(origin)}: {lines[0]}")
         else:
-            more = [f"and {count - SHOWN:,} more"] if count > SHOWN else []
-            super().__init__("\n  ".join([f"{brief(origin)}: {count:,} problems", *lines, *more]))
+            remainder = [f"and {count - SHOWN:,} more"] if count > SHOWN else []
+            super().__init__("\n  ".join([f"{brief(origin)}: {count:,} problems", *lines, *remainder]))
 
 
 class Check:
@@ -80,8 +80,8 @@ class Check:
     def need(self, good: bool, path: str, rule: str, value: Any = None, near: str | None = None) -> None:
         """Adds a problem unless `good`."""
         if not good:
-            shown = format_value(value_at(self.config, path) if value is None else value)
-            self.problems.append(Problem(path, rule, shown, near))
+            value_text = format_value(value_at(self.config, path) if value is None else value)
+            self.problems.append(Problem(path, rule, value_text, near))
 
     def match(self, pattern: str, path: str, rule: str) -> None:
         """Adds a problem unless the string at a path fully matches a pattern."""
@@ -94,15 +94,20 @@ class Check:
 
 def folded(problems: Iterable[Problem], species: Sequence[str]) -> list[Problem]:
     """Merges each problem that all species share into one under the path of the file's default."""
-    found: list[Problem] = list(problems)
-    short: dict[Problem, set[Problem]] = {}
-    for problem in found:
+    listed: list[Problem] = list(problems)
+    by_default: dict[Problem, set[Problem]] = {}
+    for problem in listed:
         for name in species:
             path = problem.path.removeprefix(f"species.{name}.")
             if path != problem.path:
-                short.setdefault(replace(problem, path=path), set()).add(problem)
-    shared = {each: default for default, own in short.items() if len(own) == len(species) for each in own}
-    return list(dict.fromkeys(shared.get(each, each) for each in found))
+                by_default.setdefault(replace(problem, path=path), set()).add(problem)
+    defaults = {
+        original: default
+        for default, originals in by_default.items()
+        if len(originals) == len(species)
+        for original in originals
+    }
+    return list(dict.fromkeys(defaults.get(original, original) for original in listed))
 
 
 def format_value(value: Any) -> str:

@@ -66,10 +66,10 @@ def _channels() -> str:
     """The page's part on channels."""
 
     def row(source: Source) -> tuple[str, ...]:
-        names, where = SEVERAL[source.of] if isinstance(source.of, str) else (source.of, "")
-        shown = ", ".join(f"`{source.name.format(each)}`" for each in names)
-        meant = " or ".join(f"`{each}`" if "<" in each else each for each in names)
-        return shown, source.meaning.format(meant), source.unit, where, "yes" if source.of_step else ""
+        names, place = SEVERAL[source.of] if isinstance(source.of, str) else (source.of, "")
+        names_text = ", ".join(f"`{source.name.format(name)}`" for name in names)
+        meaning = " or ".join(f"`{name}`" if "<" in name else name for name in names)
+        return names_text, source.meaning.format(meaning), source.unit, place, "yes" if source.of_step else ""
 
     head = ("channel", "meaning", "unit", "where", "of the step")
     return f"{_CHANNELS}\n{_table(head, map(row, SOURCES.values()))}"
@@ -99,8 +99,8 @@ def _sections(default: object, path: str) -> Iterator[str]:
         yield f"At the top of a file, each of these sections is a default for all its species: {names}.\n"
         path = ""
     for name, inner in sections(section).items():
-        below = f"{path}.{name}".lstrip(".") + (".<kind>" if inner.repeated else "")
-        yield from _sections(inner.type() if inner.repeated else getattr(default, name), below)
+        inner_path = f"{path}.{name}".lstrip(".") + (".<kind>" if inner.repeated else "")
+        yield from _sections(inner.type() if inner.repeated else getattr(default, name), inner_path)
 
 
 def _table(head: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:

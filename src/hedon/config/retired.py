@@ -53,17 +53,17 @@ SENSES = ("see", "smell")
 
 def _owners(tables: Table) -> dict[str, Table]:
     """Tables that can hold settings of a species, by path prefix: the file itself and each species."""
-    return {"": tables} | {f"species.{name}.": own for name, own in _tables(tables.get("species")).items()}
+    return {"": tables} | {f"species.{name}.": table for name, table in _tables(tables.get("species")).items()}
 
 
 def _moves(tables: Table) -> Iterator[tuple[str, str]]:
     """Yields each old path in the tables with its new path."""
-    for place, own in _owners(tables).items():
+    for place, table in _owners(tables).items():
         for old, new in MOVED.items():
-            if has(own, old.split(".")):
+            if has(table, old.split(".")):
                 yield place + old, new if new.startswith("world.") else place + new
         for sense in SENSES:
-            for name in _tables(_tables(own.get("reward")).get(sense)):
+            for name in _tables(_tables(table.get("reward")).get(sense)):
                 yield f"{place}reward.{sense}.{name}", f"{place}reward.pay.{sense}_{name}"
     for kind, food in _tables(tables.get("food")).items():
         yield from ((f"food.{kind}.{name}", f"food.{kind}.gives.{name}") for name in GIVEN if name in food)
@@ -73,13 +73,13 @@ def renamed(tables: Table) -> Iterator[Problem]:
     """Yields a problem for each setting with an old path and each choice with an old name."""
     for old, new in _moves(tables):
         yield Problem(old, f"is called {new} now")
-    for place, own in _owners(tables).items():
+    for place, table in _owners(tables).items():
         for path, names in VALUES.items():
             section, name = path.split(".")
-            value = own[section][name] if has(own, [section, name]) else None
+            value = table[section][name] if has(table, [section, name]) else None
             if isinstance(value, str) and value in names:
-                more = f', with reward.gate = "{GATES[value]}"' if value in GATES else ""
-                yield Problem(place + path, f'is called "{names[value]}" now{more}', f'"{value}"')
+                addition = f', with reward.gate = "{GATES[value]}"' if value in GATES else ""
+                yield Problem(place + path, f'is called "{names[value]}" now{addition}', f'"{value}"')
 
 
 def new_path(path: str) -> str | None:
@@ -88,11 +88,11 @@ def new_path(path: str) -> str | None:
     if len(names) == 3 and names[0] == "food" and names[2] in GIVEN:
         return f"food.{names[1]}.gives.{names[2]}"
     if len(names) > 2 and names[0] == "reward" and names[1] in SENSES:
-        rest = ["channel"] if names[3:] in (["over_rays"], ["reads"]) else names[3:]
-        return ".".join(["reward.pay", f"{names[1]}_{names[2]}", *rest])
+        tail = ["channel"] if names[3:] in (["over_rays"], ["reads"]) else names[3:]
+        return ".".join(["reward.pay", f"{names[1]}_{names[2]}", *tail])
     return MOVED.get(path)
 
 
 def _tables(value: Any) -> dict[str, Any]:
     """Entries of a table that are tables; empty for anything else."""
-    return {name: each for name, each in value.items() if isinstance(each, dict)} if isinstance(value, dict) else {}
+    return {name: entry for name, entry in value.items() if isinstance(entry, dict)} if isinstance(value, dict) else {}

@@ -32,10 +32,10 @@ def absolute_rule(place: Any, folder: Path) -> Any:
 
 def with_absolute_rules(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Tables of a config with absolute paths of rule files."""
-    found = dict(tables)
+    result = dict(tables)
     for name, value in tables.items():
         if isinstance(value, dict):
-            found[name] = with_absolute_rules(value, folder)
+            result[name] = with_absolute_rules(value, folder)
         elif name == "rule":
-            found[name] = absolute_rule(value, folder)
-    return found
+            result[name] = absolute_rule(value, folder)
+    return result

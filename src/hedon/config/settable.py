@@ -42,9 +42,9 @@ def header() -> str:
     """The whole header."""
     cases = []
     for path, (low, high) in ((path, limits_of(path)) for path in settable()):
-        where = path.replace("store.<kind>", "own") if path.startswith("store.") else f"config.{path}"
-        found = "break" if path in CONVERTED else f"return {{&{where}, {float(low)!r}f, {float(high)!r}f}}"
-        cases.append(f"    case GenomeSet::{engine_name(path)}: {found};")
+        reference = path.replace("store.<kind>", "own") if path.startswith("store.") else f"config.{path}"
+        statement = "break" if path in CONVERTED else f"return {{&{reference}, {float(low)!r}f, {float(high)!r}f}}"
+        cases.append(f"    case GenomeSet::{engine_name(path)}: {statement};")
     return _HEADER % (",\n      ".join(map(engine_name, settable())), "\n".join(cases))
 
 

@@ -15,19 +15,19 @@ def weight_titles(reward_names: Sequence[str], neutral_names: Sequence[str]) -> 
 
 def weight_title(name: str) -> str:
     """Title of a gene: the weight of action, of a food or another term, of seeing or smelling, or else its name."""
-    for ending, said in (("_old", ", when old"), ("_scale", ", power of ten")):
+    for ending, words in (("_old", ", when old"), ("_scale", ", power of ten")):
         if name.startswith("w_") and name.endswith(ending):
-            return weight_title(name.removesuffix(ending)) + said
+            return weight_title(name.removesuffix(ending)) + words
     if name == "w_action":
         return "weight of action"
     if name.startswith(EXTRA):
         return f"{name.removeprefix(EXTRA)}, read by a rule"
     if name.startswith("g_"):
         return f"{name.removeprefix('g_').replace('_', ' ')}, power of ten"
-    what = name.removeprefix("w_")
-    for start, said in (("see_", "seeing"), ("smell_", "smelling")):
-        if what.startswith(start):
-            return f"weight of {said} {what.removeprefix(start)}"
-    if what in _ADJECTIVES:
-        what += " food"
-    return f"weight of {what.replace('_', ' ')}" if name.startswith("w_") else f"gene {name}"
+    subject = name.removeprefix("w_")
+    for start, words in (("see_", "seeing"), ("smell_", "smelling")):
+        if subject.startswith(start):
+            return f"weight of {words} {subject.removeprefix(start)}"
+    if subject in _ADJECTIVES:
+        subject += " food"
+    return f"weight of {subject.replace('_', ' ')}" if name.startswith("w_") else f"gene {name}"

@@ -29,8 +29,8 @@ def read_toml(path: Path) -> Table:
         with path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)
     except OSError as error:  # for a folder, Windows reports denied permission
-        said = "it is a folder" if path.is_dir() else error.strerror
-        raise ConfigError(origin, [Problem("", f"cannot be read: {said}")]) from None
+        reason = "it is a folder" if path.is_dir() else error.strerror
+        raise ConfigError(origin, [Problem("", f"cannot be read: {reason}")]) from None
     except ValueError as error:  # a path with a null character
         raise ConfigError(origin, [Problem("", f"cannot be read: {error}")]) from None
     if len(content) > MAX_BYTES:
@@ -81,7 +81,9 @@ _TOO_DEEP = Problem("", f"has tables or lists nested deeper than {MAX_DEPTH} lev
 def _oversize(tables: Any) -> Iterator[Problem]:
     level, count = [tables], 0
     for _ in range(MAX_DEPTH + 1):
-        values = [value for each in level for value in (each.values() if isinstance(each, dict) else each)]
+        values = [
+            value for container in level for value in (container.values() if isinstance(container, dict) else container)
+        ]
         count += len(values)
         if count > MAX_VALUES:
             yield Problem("", f"has more than {MAX_VALUES:,} names and values, which no config has")

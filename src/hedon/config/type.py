@@ -21,9 +21,9 @@ def types(config: Settings) -> tuple[str, ...]:
 def diet(config: Settings, species: SpeciesConfig) -> dict[str, float]:
     """Factors of what a species eats, by name."""
     return {
-        each: factor
+        kind: factor
         for name, factor in species.diet.eats
-        for each in (config.food if name == EVERYTHING else [name])
+        for kind in (config.food if name == EVERYTHING else [name])
         if factor != 0.0
     }
 
@@ -39,13 +39,13 @@ def hunted(config: Settings) -> str:
 
 def hunters(config: Settings, name: str) -> tuple[str, ...]:
     """The other species that eat a species, in order."""
-    return tuple(other for other, each in config.species.items() if other != name and name in diet(config, each))
+    return tuple(other for other, species in config.species.items() if other != name and name in diet(config, species))
 
 
 def chosen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
     """Types selected by a list of names, in order; walls and obstacles are always among them."""
-    every = types(config)
-    return every if EVERYTHING in names else tuple(name for name in every if name in names or name in SOLID)
+    all_types = types(config)
+    return all_types if EVERYTHING in names else tuple(name for name in all_types if name in names or name in SOLID)
 
 
 def look(config: Settings, name: str) -> str:
@@ -60,8 +60,8 @@ def seen(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
 
 def asked_for(config: Settings, names: Sequence[str]) -> tuple[str, ...]:
     """Types that a query finds for a list of names, in order: species and food kinds."""
-    every = config.species if EVERYTHING in names else ()
-    return tuple(name for name in (*config.species, *config.food) if name in names or name in every)
+    all_species = config.species if EVERYTHING in names else ()
+    return tuple(name for name in (*config.species, *config.food) if name in names or name in all_species)
 
 
 def smelled(config: Settings, names: Sequence[str]) -> tuple[str, ...]:

@@ -25,14 +25,14 @@ def build(root: type[S], tables: Mapping[str, Any], origin: str, found: Sequence
         ConfigError: A type, range or name is wrong, settings contradict one another, or `found` has problems.
     """
     require_plain(tables, origin)
-    more: list[Problem] = []
-    config = _section(root, tables, "", more)
-    known = [_parts(problem.path) for problem in found]
-    problems = [each for each in more if not _is_at(_parts(each.path), known)]
-    wrong = [*known, *(_parts(problem.path) for problem in problems)]
+    new_problems: list[Problem] = []
+    config = _section(root, tables, "", new_problems)
+    known_paths = [_parts(problem.path) for problem in found]
+    problems = [candidate for candidate in new_problems if not _is_at(_parts(candidate.path), known_paths)]
+    invalid_paths = [*known_paths, *(_parts(problem.path) for problem in problems)]
     # Invalid values have their defaults now; contradictions are sought among the rest.
-    rest = (each for each in contradictions(config) if not _is_at(_parts(each.path), wrong))
-    problems.extend(rest)
+    remaining = (candidate for candidate in contradictions(config) if not _is_at(_parts(candidate.path), invalid_paths))
+    problems.extend(remaining)
     if found or problems:
         raise ConfigError(origin, [*found, *folded(problems, tuple(config.species))])
     return config
@@ -48,88 +48,92 @@ def rebuild(config: S, values: Mapping[str, Any], origin: str) -> S:
         KeyError: The config has no such setting.
     """
     problems: list[Problem] = []
-    changed = _rebuilt(config, "", [(path.split("."), value) for path, value in values.items()], problems)
-    problems = problems or contradictions(changed)
+    rebuilt = _rebuilt(config, "", [(path.split("."), value) for path, value in values.items()], problems)
+    problems = problems or contradictions(rebuilt)
     if problems:
         raise ConfigError(origin, folded(problems, tuple(config.species)))
-    return changed
+    return rebuilt
 
 
 def _rebuilt(section: T, path: str, values: Iterable[tuple[Sequence[str], Any]], problems: list[Problem]) -> T:
     """A section, or a table of sections, with values replaced; invalid values are skipped and added to `problems`."""
-    own, inner = (settings(type(section)), sections(type(section))) if is_dataclass(section) else ({}, {})
-    new: dict[str, Any] = {}
-    below: dict[str, list[tuple[Sequence[str], Any]]] = {}
-    for (name, *rest), value in values:
-        if name in own:
-            plain = _plain(value)
-            plain = {**new.get(name, getattr(section, name)), rest[0]: plain} if rest else plain
-            wrong = list(_setting_problems(own[name], plain, f"{path}{name}"))
-            new |= {} if wrong else {name: _converted(own[name].type, plain)}
-            problems.extend(wrong)
-        elif name in inner or (isinstance(section, dict) and name in section):
-            below.setdefault(name, []).append((rest, value))
+    known_settings, known_sections = (
+        (settings(type(section)), sections(type(section))) if is_dataclass(section) else ({}, {})
+    )
+    updated: dict[str, Any] = {}
+    nested: dict[str, list[tuple[Sequence[str], Any]]] = {}
+    for (name, *tail), value in values:
+        if name in known_settings:
+            plain_value = _plain(value)
+            plain_value = {**updated.get(name, getattr(section, name)), tail[0]: plain_value} if tail else plain_value
+            value_problems = list(_setting_problems(known_settings[name], plain_value, f"{path}{name}"))
+            updated |= {} if value_problems else {name: _converted(known_settings[name].type, plain_value)}
+            problems.extend(value_problems)
+        elif name in known_sections or (isinstance(section, dict) and name in section):
+            nested.setdefault(name, []).append((tail, value))
         else:
             raise KeyError(f"{path}{name}")
-    for name, group in below.items():
-        before = section[name] if isinstance(section, dict) else getattr(section, name)
-        new[name] = _rebuilt(before, f"{path}{name}.", group, problems)
-    return cast(T, {**section, **new}) if isinstance(section, dict) else replace(cast(Any, section), **new)
+    for name, group in nested.items():
+        old_section = section[name] if isinstance(section, dict) else getattr(section, name)
+        updated[name] = _rebuilt(old_section, f"{path}{name}.", group, problems)
+    return cast(T, {**section, **updated}) if isinstance(section, dict) else replace(cast(Any, section), **updated)
 
 
 def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[Problem], base: T | None = None) -> T:
     """A section from its table, with the defaults of `base`; invalid values are skipped and added to `problems`."""
-    own, inner, values = settings(kind), sections(kind), {}
+    known_settings, known_sections, values = settings(kind), sections(kind), {}
     default: Any = kind() if base is None else base
     for name, value in zip(map(str, table), table.values(), strict=True):
         place = f"{path}{name}"
-        if name in own:
-            plain = _plain(value)
-            wrong = list(_setting_problems(own[name], plain, place))
-            values |= {} if wrong else {name: _converted(own[name].type, plain)}
-            problems.extend(wrong)
-        elif name not in inner:
-            near = _named_below(kind, table, name) or _nearest_name(kind, name)
-            problems.append(Problem(place, "unknown name", nearest=near))
+        if name in known_settings:
+            plain_value = _plain(value)
+            value_problems = list(_setting_problems(known_settings[name], plain_value, place))
+            values |= {} if value_problems else {name: _converted(known_settings[name].type, plain_value)}
+            problems.extend(value_problems)
+        elif name not in known_sections:
+            suggestion = _named_below(kind, table, name) or _nearest_name(kind, name)
+            problems.append(Problem(place, "unknown name", nearest=suggestion))
         elif not isinstance(value, Mapping):
             problems.append(Problem(place, "must be a table", format_value(value)))
-        elif not inner[name].repeated:
-            values[name] = _section(inner[name].type, value, f"{place}.", problems, getattr(default, name))
+        elif not known_sections[name].repeated:
+            values[name] = _section(known_sections[name].type, value, f"{place}.", problems, getattr(default, name))
         else:
             values[name] = {}
-            for each, below in zip(map(str, value), value.values(), strict=True):
-                if isinstance(below, Mapping):
-                    values[name][each] = _section(inner[name].type, below, f"{place}.{each}.", problems)
+            for key, content in zip(map(str, value), value.values(), strict=True):
+                if isinstance(content, Mapping):
+                    values[name][key] = _section(known_sections[name].type, content, f"{place}.{key}.", problems)
                 else:
                     kind = next((k for k, section in value.items() if isinstance(section, Mapping)), f"<{name}>")
-                    near = f"{place}.{kind}.{each}" if each in settings(inner[name].type) else None
-                    problems.append(Problem(f"{place}.{each}", "must be a table", format_value(below), near))
+                    suggestion = f"{place}.{kind}.{key}" if key in settings(known_sections[name].type) else None
+                    problems.append(Problem(f"{place}.{key}", "must be a table", format_value(content), suggestion))
     return replace(default, **values)
 
 
 def _plain(value: Any) -> Any:
     """Converts NumPy numbers to Python's."""
     if isinstance(value, Mapping):
-        return {str(name): _plain(each) for name, each in value.items()}
+        return {str(name): _plain(item) for name, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
+        return [_plain(item) for item in value]
     return value.item() if getattr(value, "ndim", 1) == 0 and hasattr(value, "item") else value
 
 
 def _setting_problems(setting: Setting, value: Any, path: str) -> Iterator[Problem]:
     """Yields the problems of one value: its type, its length, or a number in it."""
-    limits, must = setting.doc.range, f"must be {setting.allowed}"
-    wrong: dict[str, Any] = dict(_misfits(setting.type, value))
+    limits, requirement = setting.doc.range, f"must be {setting.allowed}"
+    misfits: dict[str, Any] = dict(_misfits(setting.type, value))
     number = setting.type in (int, float)
-    if not wrong and (value not in limits if number else limits.max_items and len(value) > limits.max_items):
-        wrong = {"": value}
-    for place, part in wrong.items():
-        near = nearest(part, setting.choices) if isinstance(part, str) else None
-        yield Problem(path + place, must, format_value(part), near)
-    if wrong:
+    if not misfits and (value not in limits if number else limits.max_items and len(value) > limits.max_items):
+        misfits = {"": value}
+    for place, part in misfits.items():
+        suggestion = nearest(part, setting.choices) if isinstance(part, str) else None
+        yield Problem(path + place, requirement, format_value(part), suggestion)
+    if misfits:
         return
     if setting.type is float and single(value) not in limits:
-        yield Problem(path, f"is {single(value):g} in the engine's 32-bit numbers, but {must}", format_value(value))
+        yield Problem(
+            path, f"is {single(value):g} in the engine's 32-bit numbers, but {requirement}", format_value(value)
+        )
     for name, part in value.items() if get_origin(setting.type) is dict else ():
         yield from _setting_problems(number_of(setting, name), part, f"{path}.{name}")
     low, high = limits.each or (-math.inf, math.inf)
@@ -188,9 +192,11 @@ def _converted(kind: Any, value: Any) -> Any:
 
 def _named_below(section: type, table: Mapping[str, Any], name: str) -> str | None:
     """Path, in the section, of a species, food kind or the like with this name; None if there is none."""
-    repeated = (part for part, inner in sections(section).items() if inner.repeated)
-    below = {part: table[part] for part in repeated if isinstance(table.get(part), Mapping)}
-    return " or ".join(f"{part}.{name}" for part, each in below.items() if name in each) or None
+    repeated = (section_name for section_name, inner in sections(section).items() if inner.repeated)
+    tables = {
+        section_name: table[section_name] for section_name in repeated if isinstance(table.get(section_name), Mapping)
+    }
+    return " or ".join(f"{section_name}.{name}" for section_name, entries in tables.items() if name in entries) or None
 
 
 def _nearest_name(section: type, name: str) -> str | None:
@@ -200,13 +206,13 @@ def _nearest_name(section: type, name: str) -> str | None:
     Outside all sections, the nearest of all names counts, so `learing_rate` is not taken for the section `learning`.
     """
     outside = issubclass(section, Settings)
-    own = [*settings(section), *sections(section), *(PER_SPECIES if outside else ())]
-    every = dict.fromkeys(_names(Settings))
-    beside = nearest(name, own)
-    if beside is not None and (not outside or nearest(name, [*own, *every]) in own):
-        return beside
-    near = nearest(name, every)
-    return " or ".join(dict.fromkeys(_places(Settings, near))) if near else None
+    own_names = [*settings(section), *sections(section), *(PER_SPECIES if outside else ())]
+    all_names = dict.fromkeys(_names(Settings))
+    sibling = nearest(name, own_names)
+    if sibling is not None and (not outside or nearest(name, [*own_names, *all_names]) in own_names):
+        return sibling
+    suggestion = nearest(name, all_names)
+    return " or ".join(dict.fromkeys(_places(Settings, suggestion))) if suggestion else None
 
 
 def _names(section: type) -> Iterator[str]:
@@ -220,20 +226,20 @@ def _places(section: type, name: str, path: str = "") -> Iterator[str]:
     """Paths, as in a file, of all settings with this name in a section's inner sections."""
     for inner_name, inner in sections(section).items():
         # In a file, sections of species may also be at the top level.
-        below = path if inner_name == "species" else f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
+        prefix = path if inner_name == "species" else f"{path}{inner_name}." + ("<kind>." if inner.repeated else "")
         if name in settings(inner.type):
-            yield below + name
-        yield from _places(inner.type, name, below)
+            yield prefix + name
+        yield from _places(inner.type, name, prefix)
 
 
 def _parts(path: str) -> list[str]:
     return re.split(r"[.\[]", path)
 
 
-def _is_at(path: list[str], known: Iterable[list[str]]) -> bool:
+def _is_at(path: list[str], known_paths: Iterable[list[str]]) -> bool:
     """Whether a path overlaps a known one, itself or as a file's default for a species."""
     default = path[2:] if path[0] == "species" and len(path) > 2 else path
-    return any(_overlap(path, each) or _overlap(default, each) for each in known)
+    return any(_overlap(path, known_path) or _overlap(default, known_path) for known_path in known_paths)
 
 
 def _overlap(path: list[str], other: list[str]) -> bool:
