@@ -13,8 +13,8 @@ DENSE = frozenset((".parquet", ".gz", ".jpg"))
 def takes_gzip(accepted: str) -> bool:
     """Whether a browser takes gzip, from what it sent as `Accept-Encoding`."""
     weights = {}
-    for each in accepted.lower().replace(" ", "").split(","):
-        name, _, weight = each.partition(";q=")
+    for entry in accepted.lower().replace(" ", "").split(","):
+        name, _, weight = entry.partition(";q=")
         weights[name] = weight.strip("0.") != "" or weight == ""
     return weights.get("gzip", weights.get("*", False))
 
@@ -37,8 +37,8 @@ class Compressed:
             return None
         digest = sha256(content).digest()
         with self._lock:  # two browsers that begin at once compress a file once
-            known = self._packed.get(name)
-            if known is None or known[0] != digest:
-                known = (digest, gzip.compress(content, LEVEL, mtime=0))
-                self._packed[name] = known
-        return known[1] if len(known[1]) < len(content) else None
+            cached = self._packed.get(name)
+            if cached is None or cached[0] != digest:
+                cached = (digest, gzip.compress(content, LEVEL, mtime=0))
+                self._packed[name] = cached
+        return cached[1] if len(cached[1]) < len(content) else None

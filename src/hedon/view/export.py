@@ -24,15 +24,15 @@ def export(folder: Path, data: Mapping[str, Any], records: Mapping[str, Path]) -
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ViewError(f"{folder} is not empty: choose a new folder, or remove what is in it first")
-    needless = ("single.js",) if "story" in data else ("single.js", "hero.", "still/")
-    pages = {name: path for name, path in page_files().items() if not name.startswith(needless)}
+    excluded = ("single.js",) if "story" in data else ("single.js", "hero.", "still/")
+    pages = {name: path for name, path in page_files().items() if not name.startswith(excluded)}
     pairs = [*pages.items(), *((f"data/run/{name}", path) for name, path in records.items())]
     for name, path in pairs:
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(path, target, follow_symlinks=False)
-    for name, told in data.items():
+    for name, content in data.items():
         target = folder / "data" / f"{name}.json"
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(to_json(told))
+        target.write_bytes(to_json(content))
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())

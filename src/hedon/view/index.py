@@ -97,8 +97,8 @@ class RunIndex:
 
 def _spans(rows: pl.DataFrame, run: Run) -> list[Span]:
     ends = rows.group_by("world").agg(first=pl.col("step").min(), last=pl.col("step").max())
-    found = {world: (first, last) for world, first, last in ends.iter_rows()}
-    return [found.get(world) for world in range(len(run.manifest.seeds))]
+    span_by_world = {world: (first, last) for world, first, last in ends.iter_rows()}
+    return [span_by_world.get(world) for world in range(len(run.manifest.seeds))]
 
 
 def _settings(config: Config) -> dict[str, Any]:
@@ -106,7 +106,7 @@ def _settings(config: Config) -> dict[str, Any]:
     return {
         "base": f"{config.preset} ({config.fidelity})",
         "changed": [[path, _said(new), _said(old)] for path, old, new in changed_settings(config)],
-        "all": [[path, format_value(value), each.doc.meaning] for path, each, value in file_leaves(config)],
+        "all": [[path, format_value(value), setting.doc.meaning] for path, setting, value in file_leaves(config)],
     }
 
 

@@ -39,7 +39,7 @@ def describe(config: Config) -> dict[str, Any]:
         `energy_capacity`: largest energy of an agent; `mutation_noise`, as the setting; `founders`: whether they come
         from a table.
     """
-    made = layouts(config)
+    layouts_by_species = layouts(config)
     colors = meal_colors(config)
     foods = [
         {
@@ -50,12 +50,14 @@ def describe(config: Config) -> dict[str, Any]:
         }
         for name, food in config.food.items()
     ]
-    hunting = any(name in config.species for each in config.species.values() for name in diet(config, each))
+    hunting = any(name in config.species for species in config.species.values() for name in diet(config, species))
     return {
-        "species": [_species(config, name, each, made[name]) for name, each in config.species.items()],
+        "species": [
+            _species(config, name, species, layouts_by_species[name]) for name, species in config.species.items()
+        ],
         "types": list(types(config)),
         "foods": foods,
-        "genes": _genes(config, made),
+        "genes": _genes(config, layouts_by_species),
         "meals": [*config.food, *(config.species if hunting else ())],
         "obstacle_corners": config.obstacle.corners if config.obstacle.count else 0,
         "obstacle_color": OBSTACLE_COLOR,
@@ -65,14 +67,14 @@ def describe(config: Config) -> dict[str, Any]:
             "walls": [[float(value) for value in wall] for wall in walls(config.arena)],
         },
         "window": config.world.rollout_steps,
-        "energy_capacity": max(each.energy.capacity for each in config.species.values()),
+        "energy_capacity": max(species.energy.capacity for species in config.species.values()),
         "mutation_noise": config.world.mutation_noise,
         "founders": bool(config.world.founders),
     }
 
 
 def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesLayout) -> dict[str, Any]:
-    every, columns = types(config), gene_columns(config)
+    all_types, columns = types(config), gene_columns(config)
     return {
         "name": name,
         "color": species_color(list(config.species).index(name)),
@@ -85,13 +87,13 @@ def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesL
             "spread_degrees": species.sensor.ray_spread,
             "length": species.sensor.ray_length,
         },
-        "sees": [every.index(seen) for seen in layout.sees],
+        "sees": [all_types.index(seen) for seen in layout.sees],
         "noses": {
             "count": species.sensor.noses,
             "degrees": species.sensor.nose_angle,
             "decay": species.sensor.smell_decay,
         },
-        "smells": [every.index(smelled) for smelled in layout.smells],
+        "smells": [all_types.index(smelled) for smelled in layout.smells],
         "sets": [
             {"place": path, "gene": columns.index(gene_column(path)), "low": low, "high": high}
             for path, (low, high) in ((path, limits_of(kind_of(path))) for path in species.genome.set)
@@ -102,8 +104,8 @@ def _species(config: Config, name: str, species: SpeciesConfig, layout: SpeciesL
         "reward": _reward(species, layout, columns),
         "stores": [{"name": name, "capacity": store.capacity} for name, store in species.stores.items()],
         "observed": [
-            {"name": each.name, "unit": each.unit, "scale": each.scale, "meaning": each.meaning}
-            for each in layout.observed
+            {"name": channel.name, "unit": channel.unit, "scale": channel.scale, "meaning": channel.meaning}
+            for channel in layout.observed
         ],
     }
 
@@ -128,32 +130,34 @@ def _reward(species: SpeciesConfig, layout: SpeciesLayout, columns: tuple[str, .
         `meals`: the terms that contribute meals · coef · gene, each with meal (index into the `meals` of the
         layout), gene (index into its `genes`) and coef; `rest`: the names of all other terms.
     """
-    told = species.reward.family == "linear" and not species.reward.rule
+    is_linear = species.reward.family == "linear" and not species.reward.rule
     terms = () if species.reward.rule else layout.terms
-    meals = [term for term in terms if told and term.channel.source == "meals"]
+    meals = [term for term in terms if is_linear and term.channel.source == "meals"]
     return {
         "meals": [{"meal": term.channel.index, "gene": columns.index(term.gene), "coef": term.coef} for term in meals],
         "rest": [term.name for term in terms if term not in meals],
     }
 
 
-def _genes(config: Config, made: dict[str, SpeciesLayout]) -> list[dict[str, str]]:
-    known: dict[str, Gene] = {gene.name: gene for layout in made.values() for gene in layout.genes}
-    linear = {name: layout for name, layout in made.items() if config.species[name].reward.family == "linear"}
+def _genes(config: Config, layouts_by_species: dict[str, SpeciesLayout]) -> list[dict[str, str]]:
+    gene_by_name: dict[str, Gene] = {gene.name: gene for layout in layouts_by_species.values() for gene in layout.genes}
+    linear = {
+        name: layout for name, layout in layouts_by_species.items() if config.species[name].reward.family == "linear"
+    }
     eaten = {
-        each.gene
+        term.gene
         for layout in linear.values()
-        for each in layout.terms
-        if (each.channel.source, each.coef) == ("meals", 1)
+        for term in layout.terms
+        if (term.channel.source, term.coef) == ("meals", 1)
     }
     columns = gene_columns(config)
     colors = weight_colors(columns, meal_colors(config, list(config.species)))
     return [
         {
             "name": name,
-            "role": known[name].role,
-            "input": "" if known[name].role == "neutral" else name.removeprefix("w_"),
-            "title": name.replace("_", " gene ") if known[name].role == "neutral" else weight_title(name),
+            "role": gene_by_name[name].role,
+            "input": "" if gene_by_name[name].role == "neutral" else name.removeprefix("w_"),
+            "title": name.replace("_", " gene ") if gene_by_name[name].role == "neutral" else weight_title(name),
             "unit": "reward per meal" if name in eaten else "",
             "color": colors[name],
         }

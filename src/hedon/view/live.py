@@ -52,12 +52,12 @@ def live_world(config: Config, source: str) -> dict[str, Any]:
     """
     require_live(config, source)
     preset = source in PRESETS
-    shown = source if preset else Path(source).name
+    source_name = source if preset else Path(source).name
     description = describe_preset(source) if preset else _origin(config)
     return {
         "name": config.name,
         "description": description,
-        "source": shown,
+        "source": source_name,
         "fidelity": config.fidelity,
         "toml": "" if preset else dump_toml(config),
         "layout": describe(config),
@@ -85,17 +85,17 @@ def require_live(config: Config, source: str) -> None:
 
 
 def _origin(config: Config) -> str:
-    changed = ", with changes" if is_modified(config) else ""
-    return f"from the preset {config.preset}{changed}"
+    suffix = ", with changes" if is_modified(config) else ""
+    return f"from the preset {config.preset}{suffix}"
 
 
 def _settings(config: Config) -> Iterator[dict[str, Any]]:
     """The numbers and choices that the engine receives unchanged, with their schema."""
-    rows, reached = (row for row in leaves(config) if changes_worlds(row[0])), engine_paths(config)
-    for (path, setting, value), shown in zip(rows, flatten(config), strict=True):
-        single = setting.choices or setting.type in (int, float)
-        if single and path in reached and not setting.doc.shapes:
-            yield _setting(shown, reached[path], setting, value)
+    rows, paths = (row for row in leaves(config) if changes_worlds(row[0])), engine_paths(config)
+    for (path, setting, value), short_path in zip(rows, flatten(config), strict=True):
+        is_single = setting.choices or setting.type in (int, float)
+        if is_single and path in paths and not setting.doc.shapes:
+            yield _setting(short_path, paths[path], setting, value)
 
 
 def _setting(path: str, engine: list[str], setting: Setting, value: Any) -> dict[str, Any]:

@@ -75,8 +75,8 @@ class Server(ThreadingHTTPServer):
         if name.startswith("data/run/"):
             return _content(name, self.records().get(name.removeprefix("data/run/")))
         if name.startswith("data/") and name.endswith(".json"):
-            tell = self.data.get(name.removeprefix("data/").removesuffix(".json"))
-            return None if tell is None else (CONTENT_TYPES[".json"], to_json(tell()))
+            provider = self.data.get(name.removeprefix("data/").removesuffix(".json"))
+            return None if provider is None else (CONTENT_TYPES[".json"], to_json(provider()))
         return _content(name, self.page.get(name))
 
 
@@ -103,12 +103,12 @@ class _Handler(BaseHTTPRequestHandler):
         except ValueError:
             return self._answer(HTTPStatus.BAD_REQUEST, "text/plain", b"no such address\n")
         try:
-            found = server.find(path)
+            answer = server.find(path)
         except (HedonError, OSError) as error:
             return self._answer(HTTPStatus.CONFLICT, "text/plain; charset=utf-8", f"{error}\n".encode())
-        if found is None:
+        if answer is None:
             return self._answer(HTTPStatus.NOT_FOUND, "text/plain", b"not found\n")
-        content_type, content = found
+        content_type, content = answer
         packed = server.compressed.pack(path, content) if takes_gzip(self.headers.get("Accept-Encoding", "")) else None
         if packed is None:
             return self._answer(HTTPStatus.OK, content_type, content)
@@ -124,11 +124,15 @@ class _Handler(BaseHTTPRequestHandler):
             super().finish()
 
     def _answer(
-        self, status: HTTPStatus, content_type: str, content: bytes, more: Mapping[str, str] = MappingProxyType({})
+        self,
+        status: HTTPStatus,
+        content_type: str,
+        content: bytes,
+        extra_headers: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self.send_response(status)
         length = {"Content-Type": content_type, "Content-Length": str(len(content))}
-        for name, value in {**HEADERS, **length, **more}.items():
+        for name, value in {**HEADERS, **length, **extra_headers}.items():
             self.send_header(name, value)
         self.end_headers()
         if self.command != "HEAD":

@@ -41,10 +41,10 @@ def write_single(path: Path, told: Mapping[str, Any]) -> int:
         ViewError: The page has not been built.
     """
     files = page_files()
-    held = {name: files[name].read_bytes() for name in HELD} | {"data/story.json": to_json(told)}
-    parts = "\n".join(_held(name, content) for name, content in held.items())
+    embedded = {name: files[name].read_bytes() for name in HELD} | {"data/story.json": to_json(told)}
+    blocks = "\n".join(_held(name, content) for name, content in embedded.items())
     picture = f"data:image/jpeg;base64,{base64.b64encode(files['hero.jpg'].read_bytes()).decode()}"
-    style, begin = (files[name].read_text(encoding="utf-8") for name in ("assets/story.css", "single.js"))
+    style, script = (files[name].read_text(encoding="utf-8") for name in ("assets/story.css", "single.js"))
     page = files[PAGE].read_text(encoding="utf-8")
     for pattern, text in (
         (r'(?<=http-equiv="Content-Security-Policy")\s+content="[^"]*"', f' content="{POLICY}"'),
@@ -52,7 +52,7 @@ def write_single(path: Path, told: Mapping[str, Any]) -> int:
         (r'<link rel="stylesheet"[^>]*>', f"<style>{style}</style>"),
         (r'\s*<meta property="og:image"[^>]*>', ""),  # needs a web address, which the file lacks
         (r'(?<=src=")[^"]*hero\.jpg', picture),
-        (r"(?=</body>)", f"{parts}\n<script>{begin}</script>\n"),
+        (r"(?=</body>)", f"{blocks}\n<script>{script}</script>\n"),
     ):
         page, count = re.subn(pattern, lambda _, text=text: text, page)
         assert count == 1, pattern

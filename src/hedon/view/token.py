@@ -39,12 +39,12 @@ def _read(path: Path) -> str | None:
         file = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0))
     except OSError:
         return None
-    with os.fdopen(file, "rb") as opened:
-        status = os.fstat(opened.fileno())
+    with os.fdopen(file, "rb") as stream:
+        status = os.fstat(stream.fileno())
         private = os.name == "nt" or (status.st_uid == os.getuid() and not status.st_mode & 0o077)
         if not stat.S_ISREG(status.st_mode) or not private:
             return None
-        content = opened.read(LENGTH * 2)
+        content = stream.read(LENGTH * 2)
     return content.decode() if PATTERN.fullmatch(content) else None
 
 
@@ -52,9 +52,9 @@ def _write(path: Path) -> str:
     """Puts a fresh token into a file that only this user can read, in place of one that is there."""
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     token = fresh_token()
-    new = path.with_name(f"{path.name}.{secrets.token_hex(8)}")
-    file = os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    with os.fdopen(file, "wb") as opened:
-        opened.write(token.encode())
-    new.replace(path)
+    temporary = path.with_name(f"{path.name}.{secrets.token_hex(8)}")
+    file = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    with os.fdopen(file, "wb") as stream:
+        stream.write(token.encode())
+    temporary.replace(path)
     return token
