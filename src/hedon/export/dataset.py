@@ -75,9 +75,9 @@ def write_dataset(
 
 def _joined(runs: Sequence[Run], names: Sequence[str], table: TableName) -> pl.LazyFrame:
     """A table of all runs, with the name of its run in each row; columns that a run lacks are null."""
-    every = zip(runs, names, strict=True)
-    parts = [table_of(run, table).select(pl.lit(name).alias("run"), pl.all()) for run, name in every]
-    return pl.concat(parts, how="diagonal")
+    pairs = zip(runs, names, strict=True)
+    tables = [table_of(run, table).select(pl.lit(name).alias("run"), pl.all()) for run, name in pairs]
+    return pl.concat(tables, how="diagonal")
 
 
 def _card(
@@ -100,18 +100,24 @@ def _card(
         "| --- | --- | ---: | ---: | --- |",
     ]
     for run, name in zip(runs, names, strict=True):
-        told = run.manifest
-        kind = f"{told.name or told.preset or 'unknown'} ({told.fidelity or 'unknown'})"
-        cells = [name, kind, len(told.seeds), f"{max(told.steps_done, default=0):,}", f"hedon {told.hedon_version}"]
+        manifest = run.manifest
+        kind = f"{manifest.name or manifest.preset or 'unknown'} ({manifest.fidelity or 'unknown'})"
+        cells = [
+            name,
+            kind,
+            len(manifest.seeds),
+            f"{max(manifest.steps_done, default=0):,}",
+            f"hedon {manifest.hedon_version}",
+        ]
         lines.append("| " + " | ".join(escape_markdown(str(cell)) for cell in cells) + " |")
     for table in tables:
-        known = [run_tables(run.columns)[table] for run in runs]
-        columns: dict[str, Column] = {column.name: column for each in known for column in each.columns}
+        table_specs = [run_tables(run.columns)[table] for run in runs]
+        columns: dict[str, Column] = {column.name: column for each in table_specs for column in each.columns}
         rows = [
             [each.name, each.dtype + (", null" if each.nullable else ""), each.unit, each.meaning]
             for each in columns.values()
         ]
-        lines += ["", f"## data/{table}.parquet", "", f"A row is {known[0].row}.", ""]
+        lines += ["", f"## data/{table}.parquet", "", f"A row is {table_specs[0].row}.", ""]
         lines.append(pipe_table(["column", "type", "unit", "meaning"], rows).rstrip())
     lines += [
         "",

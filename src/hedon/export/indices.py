@@ -47,26 +47,29 @@ def index_table(agents: pl.DataFrame, now: int, points: int) -> pl.DataFrame:
     living = systematics.Systematics(lambda organism: organism)
     taxa: dict[int, Any] = {}
     times = np.unique(np.linspace(0, now, points + 1).round().astype(np.int64)[1:])
-    born = np.argsort(tree.birth, kind="stable")
-    dead = np.argsort(tree.death, kind="stable")
-    begun = ended = 0
+    birth_order = np.argsort(tree.birth, kind="stable")
+    death_order = np.argsort(tree.death, kind="stable")
+    birth_count = death_count = 0
     rows = []
     for time in times.tolist():
         # In order of time, since the dead cannot be added as parents; births precede deaths in each step.
         while True:
-            birth = tree.birth[born[begun]] if begun < tree.size else ALIVE
-            death = tree.death[dead[ended]] if ended < tree.size else ALIVE
+            birth = tree.birth[birth_order[birth_count]] if birth_count < tree.size else ALIVE
+            death = tree.death[death_order[death_count]] if death_count < tree.size else ALIVE
             if min(birth, death) > time or min(birth, death) == ALIVE:
                 break
             if birth <= death:
-                agent = int(born[begun])
+                agent = int(birth_order[birth_count])
                 parent = int(tree.parent[agent])
                 taxa[agent] = living.add_org(agent, taxa[parent]) if parent >= 0 else living.add_org(agent)
-                begun += 1
+                birth_count += 1
             else:
-                living.remove_org(taxa[int(dead[ended])])
-                ended += 1
+                living.remove_org(taxa[int(death_order[death_count])])
+                death_count += 1
         count = living.get_num_active()
-        found = {name: getattr(living, method)(*given) if count else None for name, (method, given) in INDICES.items()}
-        rows.append({"step": time, "living": count} | found)
+        values = {
+            name: getattr(living, method)(*arguments) if count else None
+            for name, (method, arguments) in INDICES.items()
+        }
+        rows.append({"step": time, "living": count} | values)
     return pl.DataFrame(rows, schema={"step": pl.Int64, "living": pl.Int64} | dict.fromkeys(INDICES, pl.Float64))

@@ -42,15 +42,15 @@ def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> p
         RecordError: A part of the table is damaged.
     """
     seeds = run.manifest.seeds
-    wanted = seeds[0] if seed is None and len(seeds) == 1 else seed
-    if wanted not in seeds:
-        which = "say which world" if seed is None else f"--world {seed}: there is no such world"
-        raise ExportError(f"{which}: the run has seeds " + ", ".join(map(str, seeds)))
-    agents = run.agents().filter(pl.col("seed") == wanted).sort("agent_id")
+    chosen_seed = seeds[0] if seed is None and len(seeds) == 1 else seed
+    if chosen_seed not in seeds:
+        problem = "say which world" if seed is None else f"--world {seed}: there is no such world"
+        raise ExportError(f"{problem}: the run has seeds " + ", ".join(map(str, seeds)))
+    agents = run.agents().filter(pl.col("seed") == chosen_seed).sort("agent_id")
     if species is not None:
         if species not in run.columns.species:
-            there = ", ".join(run.columns.species)
-            raise ExportError(f"--species {brief(species)}: there is no such species (there are {there})")
+            listing = ", ".join(run.columns.species)
+            raise ExportError(f"--species {brief(species)}: there is no such species (there are {listing})")
         agents = agents.filter(pl.col("species") == species) if run.columns.several else agents
     if run.manifest.parent is not None:
         agents = _rooted(agents, run.manifest.parent.step)
@@ -62,10 +62,10 @@ def pedigree(run: Run, seed: int | None = None, species: str | None = None) -> p
 
 def _rooted(agents: pl.DataFrame, begin: int) -> pl.DataFrame:
     """The agents of a branch, without parents who died before its start [step]."""
-    known = agents["agent_id"].implode()
-    roots = (pl.col("birth_step") <= begin) & ~pl.col("parent_id").is_in(known)
-    lost = [name for name in ("parent_id", "mate_id") if name in agents.columns]
-    return agents.with_columns(pl.when(~roots).then(pl.col(name)).alias(name) for name in lost)
+    ids = agents["agent_id"].implode()
+    roots = (pl.col("birth_step") <= begin) & ~pl.col("parent_id").is_in(ids)
+    parent_columns = [name for name in ("parent_id", "mate_id") if name in agents.columns]
+    return agents.with_columns(pl.when(~roots).then(pl.col(name)).alias(name) for name in parent_columns)
 
 
 def last_step(run: Run, agents: pl.DataFrame) -> int:
@@ -75,9 +75,9 @@ def last_step(run: Run, agents: pl.DataFrame) -> int:
         run: The run.
         agents: Agents of one world.
     """
-    done = run.manifest.steps_done[run.manifest.seeds.index(agents["seed"][0])]
+    steps_done = run.manifest.steps_done[run.manifest.seeds.index(agents["seed"][0])]
     events = agents.select(pl.max_horizontal(pl.col("birth_step").max(), pl.col("death_step").max())).item()
-    return max(done, events)
+    return max(steps_done, events)
 
 
 def alife_table(agents: pl.DataFrame, genes: tuple[str, ...]) -> pl.DataFrame:
@@ -93,8 +93,8 @@ def alife_table(agents: pl.DataFrame, genes: tuple[str, ...]) -> pl.DataFrame:
     """
     parent = pl.col("parent_id").cast(pl.String).fill_null("NONE")
     if "mate_id" in agents.columns:
-        both = pl.concat_str("parent_id", "mate_id", separator=",")
-        parent = pl.when(pl.col("mate_id").is_null()).then(parent).otherwise(both)
+        both_parents = pl.concat_str("parent_id", "mate_id", separator=",")
+        parent = pl.when(pl.col("mate_id").is_null()).then(parent).otherwise(both_parents)
     return agents.select(
         pl.col("agent_id").alias("id"),
         pl.concat_str(pl.lit("["), parent, pl.lit("]")).alias("ancestor_list"),
@@ -122,15 +122,15 @@ def newick(agents: pl.DataFrame, now: int) -> bytes:
     if not tree.alive.any():
         raise ExportError("nobody lives at the end, so there is no tree of the living; --format alife has all agents")
     ids = agents["agent_id"].to_numpy()
-    kept = ancestry(tree, np.flatnonzero(tree.alive))
-    found: dict[int, Subtree] = {}
-    young: dict[int, list[int]] = {}
-    for i in np.flatnonzero(kept)[::-1].tolist():  # children are listed after their parents
-        found[i] = _life(tree, i, str(ids[i]), now, young.pop(i, []), found)
+    is_ancestor = ancestry(tree, np.flatnonzero(tree.alive))
+    subtrees: dict[int, Subtree] = {}
+    children: dict[int, list[int]] = {}
+    for i in np.flatnonzero(is_ancestor)[::-1].tolist():  # children are listed after their parents
+        subtrees[i] = _life(tree, i, str(ids[i]), now, children.pop(i, []), subtrees)
         if tree.parent[i] >= 0:
-            young.setdefault(int(tree.parent[i]), []).append(i)
-    roots = [i for i in sorted(found) if tree.parent[i] < 0]
-    return "".join(f"{found[i].text}:{found[i].top - tree.birth[i]};\n" for i in roots).encode()
+            children.setdefault(int(tree.parent[i]), []).append(i)
+    roots = [i for i in sorted(subtrees) if tree.parent[i] < 0]
+    return "".join(f"{subtrees[i].text}:{subtrees[i].top - tree.birth[i]};\n" for i in roots).encode()
 
 
 def picture(agents: pl.DataFrame, now: int, genes: tuple[str, ...], gene: str | None) -> bytes:
@@ -146,12 +146,12 @@ def picture(agents: pl.DataFrame, now: int, genes: tuple[str, ...], gene: str | 
         ExportError: The gene does not exist, or children have two parents, so that there is no tree.
     """
     tree = require_tree(agents)
-    known = [name for name in genes if name in agents.columns and agents[name].is_not_null().any()]
-    name = gene if gene is not None else known[0]
-    if name not in known:
-        near = nearest(name, known)
-        hint = f"; did you mean {near}?" if near else ""
-        raise ExportError(f"--color {brief(name)}: there is no such gene (there are {', '.join(known)}){hint}")
+    recorded = [name for name in genes if name in agents.columns and agents[name].is_not_null().any()]
+    name = gene if gene is not None else recorded[0]
+    if name not in recorded:
+        suggestion = nearest(name, recorded)
+        hint = f"; did you mean {suggestion}?" if suggestion else ""
+        raise ExportError(f"--color {brief(name)}: there is no such gene (there are {', '.join(recorded)}){hint}")
     weight = agents[name].cast(pl.Float64).fill_null(0.0).to_numpy()
     return png_bytes(draw_tree(tree, weight, name, now))
 
@@ -172,14 +172,14 @@ def require_tree(agents: pl.DataFrame) -> Genealogy:
     return genealogy(agents)
 
 
-def _life(tree: Genealogy, i: int, name: str, now: int, young: list[int], found: dict[int, Subtree]) -> Subtree:
-    """The subtree that starts with the birth of agent `i`; `young` are its children with living descendants."""
-    rest = Subtree(name, now) if tree.death[i] == ALIVE else None
-    for child in sorted(young, key=lambda each: tree.birth[each], reverse=True):
-        below, step = found.pop(child), int(tree.birth[child])
-        if rest is None:
-            rest = below
+def _life(tree: Genealogy, i: int, name: str, now: int, children: list[int], subtrees: dict[int, Subtree]) -> Subtree:
+    """The subtree that starts with the birth of agent `i`; `children` are those with living descendants."""
+    subtree = Subtree(name, now) if tree.death[i] == ALIVE else None
+    for child in sorted(children, key=lambda agent: tree.birth[agent], reverse=True):
+        branch, step = subtrees.pop(child), int(tree.birth[child])
+        if subtree is None:
+            subtree = branch
         else:
-            rest = Subtree(f"({below.text}:{below.top - step},{rest.text}:{rest.top - step})", step)
-    assert rest is not None, "only ancestors of the living, and the living, are asked for"
-    return rest
+            subtree = Subtree(f"({branch.text}:{branch.top - step},{subtree.text}:{subtree.top - step})", step)
+    assert subtree is not None, "only ancestors of the living, and the living, are asked for"
+    return subtree

@@ -77,5 +77,5 @@ def write_new(out: Path, write: Callable[[BinaryIO], object]) -> None:
     try:
         write_atomically(out, write)
     except (OSError, pl.exceptions.PolarsError) as error:
-        why = (error.strerror if isinstance(error, OSError) else None) or brief(str(error))
-        raise ExportError(f"cannot write {brief(str(out))}: {why}") from error
+        reason = (error.strerror if isinstance(error, OSError) else None) or brief(str(error))
+        raise ExportError(f"cannot write {brief(str(out))}: {reason}") from error

@@ -34,35 +34,35 @@ def tree_sequence(agents: pl.DataFrame, genes: tuple[str, ...], now: int) -> Any
     except ModuleNotFoundError as error:
         raise ExportError(f'--format trees needs {error.name}: pip install "hedon[phylogeny]"') from error
     tree = require_tree(agents)
-    born = np.flatnonzero(tree.parent >= 0)
-    births = born[np.lexsort((tree.birth[born], tree.parent[born]))]  # by parent, in the order of time
+    offspring = np.flatnonzero(tree.parent >= 0)
+    births = offspring[np.lexsort((tree.birth[offspring], tree.parent[offspring]))]  # by parent, in the order of time
     parent, living, roots = tree.parent[births], np.flatnonzero(tree.death == ALIVE), np.flatnonzero(tree.parent < 0)
     tip, root = len(births), len(births) + len(living)  # indices of the first such nodes
-    first = np.full(tree.size, -1)  # first node of each agent's life
-    first[living] = tip + np.arange(len(living))
-    last = first.copy()
-    first[parent[::-1]] = np.arange(len(births))[::-1]
-    follows = np.append(np.where(parent[1:] == parent[:-1], np.arange(1, len(births)), -1), -1)[: len(births)]
-    follows = np.where(follows < 0, last[parent], follows)
+    first_node = np.full(tree.size, -1)  # first node of each agent's life
+    first_node[living] = tip + np.arange(len(living))
+    last_node = first_node.copy()
+    first_node[parent[::-1]] = np.arange(len(births))[::-1]
+    next_node = np.append(np.where(parent[1:] == parent[:-1], np.arange(1, len(births)), -1), -1)[: len(births)]
+    next_node = np.where(next_node < 0, last_node[parent], next_node)
 
-    above = np.concatenate([np.arange(len(births)), np.arange(len(births)), root + np.arange(len(roots))])
-    below = np.concatenate([follows, first[births], first[roots]])
-    there = below >= 0
-    when = np.where(tree.birth[births] < now, now - tree.birth[births], LAST_BIRTH)
+    edge_parents = np.concatenate([np.arange(len(births)), np.arange(len(births)), root + np.arange(len(roots))])
+    edge_children = np.concatenate([next_node, first_node[births], first_node[roots]])
+    has_child = edge_children >= 0
+    node_times = np.where(tree.birth[births] < now, now - tree.birth[births], LAST_BIRTH)
     tables = tskit.TableCollection(sequence_length=1)
     tables.time_units = "steps"
     _set_individuals(tables, tskit, agents, genes)
     tables.nodes.set_columns(
         flags=np.r_[np.zeros(tip, np.uint32), np.ones(len(living), np.uint32), np.zeros(len(roots), np.uint32)],
-        time=np.r_[when, np.zeros(len(living)), (now - tree.birth[roots]).astype(np.float64)],
+        time=np.r_[node_times, np.zeros(len(living)), (now - tree.birth[roots]).astype(np.float64)],
         individual=np.r_[parent, living, roots].astype(np.int32),
     )
-    edges = int(there.sum())
+    edges = int(has_child.sum())
     tables.edges.set_columns(
         left=np.zeros(edges),
         right=np.ones(edges),
-        parent=above[there].astype(np.int32),
-        child=below[there].astype(np.int32),
+        parent=edge_parents[has_child].astype(np.int32),
+        child=edge_children[has_child].astype(np.int32),
     )
     tables.sort()
     return tables.tree_sequence()
