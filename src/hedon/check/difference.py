@@ -62,7 +62,7 @@ class Difference:
     @property
     def same(self) -> bool:
         """Whether settings and records are equal, even if different versions of hedon made them."""
-        return not (self.settings or self.ends or self.lonely or any(each.values for each in self.partings))
+        return not (self.settings or self.ends or self.lonely or any(parting.values for parting in self.partings))
 
 
 def compare_runs(a: Path, b: Path) -> Difference:
@@ -77,63 +77,67 @@ def compare_runs(a: Path, b: Path) -> Difference:
         ConfigError: The config of one of them cannot be read.
     """
     runs = [open_run(path).load() for path in (a, b)]
-    one, two = (run.manifest for run in runs)
+    first_manifest, second_manifest = (run.manifest for run in runs)
     settings = diff(*(run.config for run in runs))
-    made_by = [(name, getattr(one, name), getattr(two, name)) for name in MADE_BY]
-    first, second = (_by_seed(read_worlds([run])) for run in runs)
-    partings = [_parting(seed, first[seed], second[seed]) for seed in one.seeds if seed in first.keys() & second.keys()]
-    equal = [each.seed for each in partings if not each.values]
+    made_by = [(name, getattr(first_manifest, name), getattr(second_manifest, name)) for name in MADE_BY]
+    first_worlds, second_worlds = (_by_seed(read_worlds([run])) for run in runs)
+    partings = [
+        _parting(seed, first_worlds[seed], second_worlds[seed])
+        for seed in first_manifest.seeds
+        if seed in first_worlds.keys() & second_worlds.keys()
+    ]
+    equal_seeds = [parting.seed for parting in partings if not parting.values]
     return Difference(
         settings=settings,
         made_by=[row for row in made_by if row[1] != row[2]],
         partings=partings,
-        ends=[seed for seed in equal if _ends_differ(one, two, seed)],
-        lonely=sorted(set(one.seeds) ^ set(two.seeds)),
+        ends=[seed for seed in equal_seeds if _ends_differ(first_manifest, second_manifest, seed)],
+        lonely=sorted(set(first_manifest.seeds) ^ set(second_manifest.seeds)),
     )
 
 
 def _by_seed(worlds: Sequence[WorldRecord]) -> dict[int, dict[str, WorldRecord]]:
-    found: dict[int, dict[str, WorldRecord]] = {}
+    worlds_by_seed: dict[int, dict[str, WorldRecord]] = {}
     for world in worlds:
-        found.setdefault(world.seed, {})[world.species] = world
-    return found
+        worlds_by_seed.setdefault(world.seed, {})[world.species] = world
+    return worlds_by_seed
 
 
 def _parting(seed: int, first: dict[str, WorldRecord], second: dict[str, WorldRecord]) -> Parting:
     """Compares windows first, then the lives of agents; with several species, the first to diverge is reported."""
-    shared = [name for name in first if name in second]
-    every = [each for pair in (first, second) for each in pair.values()]
-    until = min([each.recorded_step() for each in every], default=0)
-    since = max([each.first_step for each in every], default=0)
-    found: list[Parting] = []
-    for name in shared:
+    shared_species = [name for name in first if name in second]
+    worlds = [each for pair in (first, second) for each in pair.values()]
+    until = min([each.recorded_step() for each in worlds], default=0)
+    since = max([each.first_step for each in worlds], default=0)
+    partings: list[Parting] = []
+    for name in shared_species:
         pair = _since(first[name].until(until), since), _since(second[name].until(until), since)
-        cut = max(first[name].last_step, second[name].last_step) > until
+        is_cut = max(first[name].last_step, second[name].last_step) > until
         species = name if len(first) > 1 else ""
         windows = _first_row(pair[0].population, pair[1].population, "step", "step", how="inner")
         if windows is not None:
-            found.append(Parting(seed, species, windows[0], None, windows[2], since, until))
+            partings.append(Parting(seed, species, windows[0], None, windows[2], since, until))
             continue
-        lives = _first_row(*_lives(*pair, cut=cut), "agent_id", "birth_step", how="full")
+        lives = _first_row(*_lives(*pair, is_cut=is_cut), "agent_id", "birth_step", how="full")
         if lives is not None:
-            found.append(Parting(seed, species, *lives, since, until))
-    return min(found, key=lambda each: each.step or 0, default=Parting(seed, "", None, None, {}, since, until))
+            partings.append(Parting(seed, species, *lives, since, until))
+    return min(partings, key=lambda each: each.step or 0, default=Parting(seed, "", None, None, {}, since, until))
 
 
 def _since(world: WorldRecord, step: int) -> WorldRecord:
     """The world without agents that died before the records of a branch start [step]."""
-    died = pl.col("death_step")
-    return replace(world, agents=world.agents.filter(died.is_null() | (died > step))) if step else world
+    death_step = pl.col("death_step")
+    return replace(world, agents=world.agents.filter(death_step.is_null() | (death_step > step))) if step else world
 
 
-def _lives(one: WorldRecord, two: WorldRecord, *, cut: bool) -> tuple[pl.DataFrame, pl.DataFrame]:
+def _lives(one: WorldRecord, two: WorldRecord, *, is_cut: bool) -> tuple[pl.DataFrame, pl.DataFrame]:
     """Their agents; if one record was cut, values that it lacks for the living are set to null in both."""
-    if not cut:
+    if not is_cut:
         return one.agents, two.agents
-    known = {"world", "seed", "species", "agent_id", "parent_id", "generation", "birth_step", "birth_energy"}
-    later = [name for name in one.agents.columns if name not in known | set(one.weight_names)]
+    birth_columns = {"world", "seed", "species", "agent_id", "parent_id", "generation", "birth_step", "birth_energy"}
+    later_columns = [name for name in one.agents.columns if name not in birth_columns | set(one.weight_names)]
     dead = pl.col("death_step").is_not_null()
-    first, second = (each.agents.with_columns(pl.when(dead).then(pl.col(later))) for each in (one, two))
+    first, second = (world.agents.with_columns(pl.when(dead).then(pl.col(later_columns))) for world in (one, two))
     return first, second
 
 
@@ -145,9 +149,9 @@ def _first_row(
     Only windows in both tables are compared, since a run that ends within a window has a row that a longer run lacks.
     """
     columns = [name for name in one.columns if name in two.columns and name not in (*_NAMES, key)]
-    both = one.select(key, *columns).join(two.select(key, *columns), on=key, how=how, coalesce=True, suffix=" 2")
-    differs = [(pl.col(name).ne_missing(pl.col(f"{name} 2"))).alias(name) for name in columns]
-    rows = both.filter(pl.any_horizontal(differs)) if columns else both.clear()
+    joined = one.select(key, *columns).join(two.select(key, *columns), on=key, how=how, coalesce=True, suffix=" 2")
+    differences = [(pl.col(name).ne_missing(pl.col(f"{name} 2"))).alias(name) for name in columns]
+    rows = joined.filter(pl.any_horizontal(differences)) if columns else joined.clear()
     if rows.is_empty():
         return None
     place = pl.col(order) if order == key else pl.coalesce(order, f"{order} 2")

@@ -46,10 +46,10 @@ def break_rules(rows: pl.DataFrame, table: str, keys: Sequence[str], rules: Mapp
         keys: Columns that identify a row.
         rules: Descriptions of faults, each with an expression that is true for the faulty rows.
     """
-    for what, wrong in rules.items():
-        found = rows.filter(wrong)
-        if found.height:
-            yield Finding(table, f"{_name_rows(found, keys)}: {what}")
+    for what, is_broken in rules.items():
+        broken = rows.filter(is_broken)
+        if broken.height:
+            yield Finding(table, f"{_name_rows(broken, keys)}: {what}")
 
 
 def _name_rows(rows: pl.DataFrame, keys: Sequence[str]) -> str:
@@ -59,5 +59,5 @@ def _name_rows(rows: pl.DataFrame, keys: Sequence[str]) -> str:
         " ".join(f"{word} {value}" for word, value in zip(words, row, strict=True))
         for row in rows.select(keys).head(SHOWN).iter_rows()
     ]
-    more = f" and {rows.height - SHOWN:,} more" if rows.height > SHOWN else ""
-    return "; ".join(names) + more
+    remainder = f" and {rows.height - SHOWN:,} more" if rows.height > SHOWN else ""
+    return "; ".join(names) + remainder

@@ -34,16 +34,16 @@ def check_founders(
         return
     if founders is None or manifest is None or agents is None:
         return
-    first, made = 0, layouts(config)
+    first_id, layouts_by_species = 0, layouts(config)
     for name, species in config.species.items():  # IDs of founders follow the order of species
-        count, genes = species.population.initial_count, made[name].gene_names
-        own = pl.col("agent_id").is_between(first, first + count - 1) & (pl.col("generation") == 0)
+        count, genes = species.population.initial_count, layouts_by_species[name].gene_names
+        is_founder = pl.col("agent_id").is_between(first_id, first_id + count - 1) & (pl.col("generation") == 0)
         for world, seed in enumerate(manifest.seeds):
-            mine = agents.filter(own & (pl.col("world") == world))
-            ids = mine["agent_id"].to_numpy()
-            given = founders.of_species(name).genomes(seed, count, genes)[ids - first]
-            wrong = (~np.isnan(given) & (given != mine.select(genes).to_numpy())).any(axis=1)
-            if wrong.any():
-                what = f"world {world}: the genes of {wrong.sum():,} founders are not those of {FOUNDERS}"
-                yield Finding("agents", f"{what}, the first is agent {ids[wrong][0]}")
-        first += count
+            founder_rows = agents.filter(is_founder & (pl.col("world") == world))
+            ids = founder_rows["agent_id"].to_numpy()
+            expected = founders.of_species(name).genomes(seed, count, genes)[ids - first_id]
+            differs = (~np.isnan(expected) & (expected != founder_rows.select(genes).to_numpy())).any(axis=1)
+            if differs.any():
+                message = f"world {world}: the genes of {differs.sum():,} founders are not those of {FOUNDERS}"
+                yield Finding("agents", f"{message}, the first is agent {ids[differs][0]}")
+        first_id += count

@@ -69,20 +69,24 @@ def _life_rules(manifest: Manifest) -> dict[str, pl.Expr]:
         rules["its cause of death is none that there is"] = ~cause.is_in(CAUSES)
         rules["died without a cause, or has one but lives"] = dead != cause.is_not_null()
     if manifest.status != "running" and len(manifest.steps_done) == len(manifest.seeds):
-        last = pl.col("world").replace_strict(dict(enumerate(manifest.steps_done)), default=None, return_dtype=pl.Int64)
-        rules["was born or died after the last step of the run"] = pl.max_horizontal("birth_step", "death_step") > last
+        last_step = pl.col("world").replace_strict(
+            dict(enumerate(manifest.steps_done)), default=None, return_dtype=pl.Int64
+        )
+        rules["was born or died after the last step of the run"] = (
+            pl.max_horizontal("birth_step", "death_step") > last_step
+        )
     return rules
 
 
 def _family_rules(manifest: Manifest, pairs: Collection[str] | None, complete: bool) -> dict[str, pl.Expr]:
     """Rules for an agent and its parents. Agents that died before a branch started are only in the parent run."""
-    child, known = pl.col("parent_id").is_not_null(), pl.col("parent_birth").is_not_null()
-    counted, begun = pl.col("counted"), first_step(manifest)
+    child, has_recorded_parent = pl.col("parent_id").is_not_null(), pl.col("parent_birth").is_not_null()
+    child_count, start_step = pl.col("counted"), first_step(manifest)
     # The records of a killed run may lack one of two parents.
-    both = known & (pl.col("mate_id").is_null() | pl.col("mate_generation").is_not_null())
+    has_all_parents = has_recorded_parent & (pl.col("mate_id").is_null() | pl.col("mate_generation").is_not_null())
     rules = {
         "its parent is itself or a younger agent": pl.col("parent_id") >= pl.col("agent_id"),
-        "its generation is not one more than its parents'": both
+        "its generation is not one more than its parents'": has_all_parents
         & (pl.col("generation") != pl.max_horizontal("parent_generation", "mate_generation") + 1),
         "was born before its parent or in the same step": pl.col("birth_step") <= pl.col("parent_birth"),
         "was born after its parent died": pl.col("birth_step") > pl.col("parent_death"),
@@ -94,15 +98,15 @@ def _family_rules(manifest: Manifest, pairs: Collection[str] | None, complete: b
     }
     if pairs is not None:
         # A branch may have changed the mating rule, so agents born before its start follow the old one.
-        two, here = pl.col("species").is_in(list(pairs)), pl.col("birth_step") > begun
-        rules["has a parent but no second one"] = here & two & child & pl.col("mate_id").is_null()
-        rules["has two parents, but its species has one"] = here & ~two & pl.col("mate_id").is_not_null()
+        needs_two, is_new = pl.col("species").is_in(list(pairs)), pl.col("birth_step") > start_step
+        rules["has a parent but no second one"] = is_new & needs_two & child & pl.col("mate_id").is_null()
+        rules["has two parents, but its species has one"] = is_new & ~needs_two & pl.col("mate_id").is_not_null()
     if complete:
-        rules["its parent is missing"] = child & ~known & (pl.col("birth_step") > begun)
-        fewer = pl.col("children") < counted
-        born_here = (pl.col("birth_step") > begun) | (begun == 0)
+        rules["its parent is missing"] = child & ~has_recorded_parent & (pl.col("birth_step") > start_step)
+        fewer = pl.col("children") < child_count
+        born_here = (pl.col("birth_step") > start_step) | (start_step == 0)
         rules["its number of children is not the number of agents that name it as parent"] = fewer | (
-            born_here & (pl.col("children") != counted)
+            born_here & (pl.col("children") != child_count)
         )
     return rules
 
@@ -116,16 +120,16 @@ def _with_parents(agents: pl.DataFrame, manifest: Manifest) -> pl.DataFrame:
         family.drop_nulls(column).select("world", agent_id=column).cast({"agent_id": pl.Int64})
         for column in ("parent_id", "mate_id")
     )
-    for which in ("parent", "mate"):
-        known = agents.select(
+    for role in ("parent", "mate"):
+        parents = agents.select(
             "world",
-            pl.col("agent_id").alias(f"{which}_id"),
-            pl.col("generation").alias(f"{which}_generation"),
-            pl.col("birth_step").alias(f"{which}_birth"),
-            pl.col("death_step").alias(f"{which}_death"),
-            pl.col("species").alias(f"{which}_species"),
+            pl.col("agent_id").alias(f"{role}_id"),
+            pl.col("generation").alias(f"{role}_generation"),
+            pl.col("birth_step").alias(f"{role}_birth"),
+            pl.col("death_step").alias(f"{role}_death"),
+            pl.col("species").alias(f"{role}_species"),
         )
-        family = family.join(known, on=["world", f"{which}_id"], how="left", maintain_order="left")
+        family = family.join(parents, on=["world", f"{role}_id"], how="left", maintain_order="left")
     counts = ids.group_by("world", "agent_id").agg(counted=pl.len())
     family = family.join(counts, on=list(_KEYS), how="left", maintain_order="left")
     return family.with_columns(pl.col("counted").fill_null(0).cast(pl.Int64))
@@ -140,9 +144,9 @@ def _cycles(agents: pl.DataFrame) -> Iterator[Finding]:
     parent = {(world, agent): ancestor for world, agent, ancestor in rows}
     for world, start in suspects.select(_KEYS).iter_rows():
         path = [start]
-        while (above := parent.get((world, path[-1]))) is not None and above not in path:
-            path.append(above)
-        if above == start:
+        while (parent_id := parent.get((world, path[-1]))) is not None and parent_id not in path:
+            path.append(parent_id)
+        if parent_id == start:
             circle = " → ".join(map(str, [*path, start]))
             yield Finding("agents", f"world {world}: an agent is its own ancestor: {circle}")
             return
@@ -150,19 +154,19 @@ def _cycles(agents: pl.DataFrame) -> Iterator[Finding]:
 
 def _gaps(agents: pl.DataFrame, manifest: Manifest) -> Iterator[Finding]:
     """Missing IDs, if later ones are recorded."""
-    begun = first_step(manifest)
+    start_step = first_step(manifest)
     for world in range(len(manifest.seeds)):
-        mine = agents.filter(pl.col("world") == world, (pl.col("birth_step") > begun) | (begun == 0))
-        ids = mine["agent_id"].sort()
+        world_agents = agents.filter(pl.col("world") == world, (pl.col("birth_step") > start_step) | (start_step == 0))
+        ids = world_agents["agent_id"].sort()
         if not ids.len():
             continue
-        start = 0 if begun == 0 else int(ids[0])
+        start = 0 if start_step == 0 else int(ids[0])
         # IDs in a damaged file may be any number, so this loops over rows and not over the IDs between them.
-        known = [start - 1, *ids.unique().sort().to_list()]
-        missing = known[-1] + 1 - start - (len(known) - 1)
+        recorded_ids = [start - 1, *ids.unique().sort().to_list()]
+        missing = recorded_ids[-1] + 1 - start - (len(recorded_ids) - 1)
         if missing:
-            between = (each for low, high in pairwise(known) for each in range(low + 1, high))
-            shown = ", ".join(map(str, islice(between, 5))) + (" …" if missing > 5 else "")
+            between = (missing_id for low, high in pairwise(recorded_ids) for missing_id in range(low + 1, high))
+            examples = ", ".join(map(str, islice(between, 5))) + (" …" if missing > 5 else "")
             yield Finding(
-                "agents", f"world {world}: {missing:,} agents are missing, though later ones are there: {shown}"
+                "agents", f"world {world}: {missing:,} agents are missing, though later ones are there: {examples}"
             )

@@ -31,15 +31,15 @@ def check_population(
     """
     yield from break_rules(population, "population", _keys(population), world_rules(manifest) | species_rules(manifest))
     for world, species in product(range(len(manifest.seeds)), manifest.species):
-        here = pl.col("world") == world
+        selection = pl.col("world") == world
         if manifest.columns.several:
-            here &= pl.col("species") == species
-        rows = population.filter(here)
-        mine = agents.filter(here) if agents is not None else None
+            selection &= pl.col("species") == species
+        rows = population.filter(selection)
+        species_agents = agents.filter(selection) if agents is not None else None
         findings = list(_check_order(rows, world, manifest, ended))
         yield from findings
         if rows.height and not findings:
-            yield from _check_world(rows, mine, manifest)
+            yield from _check_world(rows, species_agents, manifest)
 
 
 def _keys(rows: pl.DataFrame) -> tuple[str, ...]:
@@ -48,35 +48,39 @@ def _keys(rows: pl.DataFrame) -> tuple[str, ...]:
 
 
 def _check_order(rows: pl.DataFrame, world: int, manifest: Manifest, ended: bool) -> Iterator[Finding]:
-    begun, before = first_step(manifest), pl.col("step").shift(1)
+    start_step, previous = first_step(manifest), pl.col("step").shift(1)
     start = pl.col("step") - pl.col("steps")
     rules = {
-        "the row is repeated or out of order": pl.col("step") <= before,
+        "the row is repeated or out of order": pl.col("step") <= previous,
         "the interval has no length": pl.col("steps") <= 0,
     }
-    wrong = list(break_rules(rows, "population", _keys(rows), rules))
+    findings = list(break_rules(rows, "population", _keys(rows), rules))
     # The first interval of a branch starts at its parent's last row.
-    first = start > begun if manifest.parent else start != begun
-    gap = {"there is a gap before the interval": pl.when(before.is_null()).then(first).otherwise(start != before)}
-    yield from wrong or break_rules(rows, "population", _keys(rows), gap)
-    last = rows["step"][-1] if rows.height else begun
-    if ended and last != manifest.steps_done[world]:
-        end = f"ends at step {last:,}, but the manifest has {manifest.steps_done[world]:,} steps"
+    is_bad_start = start > start_step if manifest.parent else start != start_step
+    gap = {
+        "there is a gap before the interval": pl.when(previous.is_null())
+        .then(is_bad_start)
+        .otherwise(start != previous)
+    }
+    yield from findings or break_rules(rows, "population", _keys(rows), gap)
+    last_step = rows["step"][-1] if rows.height else start_step
+    if ended and last_step != manifest.steps_done[world]:
+        end = f"ends at step {last_step:,}, but the manifest has {manifest.steps_done[world]:,} steps"
         yield Finding("population", f"world {world}: {end}")
 
 
 def _check_world(rows: pl.DataFrame, agents: pl.DataFrame | None, manifest: Manifest) -> Iterator[Finding]:
-    living = pl.col("alive").shift(1) + pl.col("births") - pl.col("deaths")
+    expected_alive = pl.col("alive").shift(1) + pl.col("births") - pl.col("deaths")
     rules = {
         "alive, births or deaths is negative": pl.min_horizontal("alive", "births", "deaths") < 0,
-        "alive does not agree with births and deaths": pl.col("alive") != living,
+        "alive does not agree with births and deaths": pl.col("alive") != expected_alive,
     }
     if agents is not None:
         rows = rows.with_columns(**_count_agents(rows, agents))
-        known = pl.col("step") - pl.col("steps") >= first_step(manifest)
+        is_recorded = pl.col("step") - pl.col("steps") >= first_step(manifest)
         for name in _compared(rows):
-            other = pl.col(name) != pl.col(f"{name}_of_agents")
-            rules[f"{name} does not agree with the table agents"] = known & other
+            differs = pl.col(name) != pl.col(f"{name}_of_agents")
+            rules[f"{name} does not agree with the table agents"] = is_recorded & differs
     yield from break_rules(rows, "population", _keys(rows), rules)
     if agents is not None and manifest.parent is None:
         yield from _check_meals(rows, agents, manifest)
@@ -142,8 +146,8 @@ def _ledger_rounding(rows: pl.DataFrame) -> NDArray[np.float64]:
     """Largest ledger error of each interval from rounding; the counters are sums since the start."""
     moving = [*flow_names(rows), "energy_shared"]
     flows = sum(np.cumsum(np.abs(rows[name].to_numpy())) for name in moving) + rows["energy_total"].to_numpy()
-    first = rows["step"][0] - rows["steps"][0]
-    recorded = rows["step"].to_numpy() - first
+    start = rows["step"][0] - rows["steps"][0]
+    recorded = rows["step"].to_numpy() - start
     # Energy flows before the first row of a branch are not recorded, so the same flow per step is assumed.
-    moved = (flows + rows["energy_total"][0]) * (rows["step"].to_numpy() / recorded)
-    return _ROUNDING * (rows["agent_steps"].to_numpy() + rows["alive"].to_numpy() + 1) * moved
+    energy_moved = (flows + rows["energy_total"][0]) * (rows["step"].to_numpy() / recorded)
+    return _ROUNDING * (rows["agent_steps"].to_numpy() + rows["alive"].to_numpy() + 1) * energy_moved

@@ -61,9 +61,9 @@ class _Folder:
         return self.config is not None and bool(self.config.driven)
 
     def add(self, findings: Iterator[Finding]) -> int:
-        before = len(self.findings)
+        count = len(self.findings)
         self.findings += findings
-        return len(self.findings) - before
+        return len(self.findings) - count
 
 
 def check_run(path: Path | str) -> CheckResult:
@@ -118,13 +118,13 @@ def _check_manifest(folder: _Folder) -> None:
         lists.append(("world_digests", manifest.world_digests))
     for name, values in lists:
         if len(values) != worlds:
-            what = f"{name} has {len(values)} entries, but there are {worlds} seeds"
-            folder.findings.append(Finding(MANIFEST, what))
+            message = f"{name} has {len(values)} entries, but there are {worlds} seeds"
+            folder.findings.append(Finding(MANIFEST, message))
             folder.manifest = None
     for step in manifest.steps_done:
         if not 0 <= step <= manifest.steps_asked:
-            what = f"steps_done is {step:,}, but must be from 0 to steps_asked = {manifest.steps_asked:,}"
-            folder.findings.append(Finding(MANIFEST, what))
+            message = f"steps_done is {step:,}, but must be from 0 to steps_asked = {manifest.steps_asked:,}"
+            folder.findings.append(Finding(MANIFEST, message))
 
 
 def _note_status(folder: _Folder) -> None:
@@ -132,10 +132,10 @@ def _note_status(folder: _Folder) -> None:
         return
     status, fault = folder.manifest.status, folder.manifest.fault
     if status == "running":
-        again = "" if folder.driven else f" (`hedon resume {folder.path}` continues a killed run)"
+        hint = "" if folder.driven else f" (`hedon resume {folder.path}` continues a killed run)"
         folder.notes.append(
             "the run is still running, or was killed: its last records may be incomplete, and missing agents are not "
-            f"reported{again}"
+            f"reported{hint}"
         )
     if status == "failed":
         folder.notes.append("the run stopped at a fault" + (f": {fault}" if fault else ""))
@@ -154,8 +154,8 @@ def _check_config(folder: _Folder) -> None:
     if _is_other(config, manifest):
         folder.findings.append(Finding(CONFIG, "was changed: its digest differs from the one in the manifest"))
     elif not _same_columns(columns_of(config), manifest.columns):
-        what = "the species, the kinds of food or the genes differ from those in the config"
-        folder.findings.append(Finding(MANIFEST, what))
+        message = "the species, the kinds of food or the genes differ from those in the config"
+        folder.findings.append(Finding(MANIFEST, message))
     else:
         folder.config = config
 
@@ -165,9 +165,9 @@ def _is_other(config: Config, manifest: Manifest) -> bool:
     return manifest.schema == SCHEMA and manifest.config_digest not in (None, digest(config))
 
 
-def _same_columns(columns: Columns, others: Columns) -> bool:
-    known = [(each.food_kinds, each.species, each.gene_names) for each in (columns, others)]
-    return known[0] == known[1]
+def _same_columns(columns: Columns, other: Columns) -> bool:
+    names = [(item.food_kinds, item.species, item.gene_names) for item in (columns, other)]
+    return names[0] == names[1]
 
 
 def _check_checkpoints(folder: _Folder) -> None:
@@ -204,21 +204,21 @@ def _check_tables(folder: _Folder) -> None:
         folder.notes.append("the tables were not checked: without manifest and config, their columns are not known")
         return
     columns = source.columns if isinstance(source, Manifest) else columns_of(source)
-    wrong = 0
+    fault_count = 0
     if folder.checkpoints:
         parts = folder.checkpoints[-1].head.parts
-        wrong += sum(
-            not part_path(folder.path, table, len(each) - 1).is_file() for table, each in parts.items() if each
+        fault_count += sum(
+            not part_path(folder.path, table, len(entries) - 1).is_file() for table, entries in parts.items() if entries
         )
         folder.add(check_digests(folder.path, parts))
     for name, table in run_tables(columns).items():
-        wrong += folder.add(check_numbering(folder.path, name))
+        fault_count += folder.add(check_numbering(folder.path, name))
         if name == "agents" and not (folder.path / LIVING).exists() and not _has_just_begun(folder):
-            wrong += folder.add(iter([Finding(LIVING, "is missing: the living agents are not known")]))
+            fault_count += folder.add(iter([Finding(LIVING, "is missing: the living agents are not known")]))
         parts = [pl.DataFrame(schema=table.polars_schema)]
         latest: dict[int, int] = {}
         for part, rows, faults in read_parts(folder.path, table, folder.manifest):
-            wrong += folder.add(iter(faults))
+            fault_count += folder.add(iter(faults))
             if rows is None:
                 continue
             if name == "frames":  # may be larger than memory, so check each part separately
@@ -227,7 +227,7 @@ def _check_tables(folder: _Folder) -> None:
                 parts.append(rows)
         if name != "frames":
             folder.tables[name] = pl.concat(parts)
-    folder.whole = not wrong
+    folder.whole = not fault_count
 
 
 def _has_just_begun(folder: _Folder) -> bool:
@@ -238,8 +238,8 @@ def _has_just_begun(folder: _Folder) -> bool:
 
 def _check_frames(name: str, rows: pl.DataFrame, latest: dict[int, int]) -> Iterator[Finding]:
     """Checks that the frames of each world are in order; `latest` is the last step so far, by world."""
-    for (world,), mine in rows.group_by("world", maintain_order=True):
-        steps = mine["step"]
+    for (world,), frames in rows.group_by("world", maintain_order=True):
+        steps = frames["step"]
         if not steps.is_sorted() or steps[0] < latest.get(world, 0):
             yield Finding(name, f"frames of world {world} are out of order")
         latest[world] = max(steps[-1], latest.get(world, 0))
@@ -257,10 +257,10 @@ def _check_rows(folder: _Folder) -> None:
     complete = ended and folder.whole
     pairs = None
     if folder.config is not None:
-        pairs = [name for name, each in folder.config.species.items() if each.birth.mating == "pairs"]
-    broken = folder.add(check_agents(agents, manifest, pairs, complete=complete))
-    compared = agents if complete and not broken else None
-    folder.add(check_population(folder.tables["population"], compared, manifest, ended=ended))
+        pairs = [name for name, species in folder.config.species.items() if species.birth.mating == "pairs"]
+    broken_count = folder.add(check_agents(agents, manifest, pairs, complete=complete))
+    checked_agents = agents if complete and not broken_count else None
+    folder.add(check_population(folder.tables["population"], checked_agents, manifest, ended=ended))
 
 
 def _check_end(folder: _Folder) -> None:
@@ -275,16 +275,16 @@ def _check_end(folder: _Folder) -> None:
     if manifest.status in ("finished", "interrupted") and not manifest.records_digest:
         folder.findings.append(Finding(MANIFEST, "has no digest of the records, which every ended run must have"))
     if manifest.records_digest and folder.whole:
-        found = records_digest(folder.path, manifest.columns)
-        if found != manifest.records_digest:
+        actual_digest = records_digest(folder.path, manifest.columns)
+        if actual_digest != manifest.records_digest:
             folder.findings.append(
                 Finding("records", "rows were changed: their digest differs from the one in the manifest")
             )
     if manifest.world_digests and folder.checkpoints:
         head = folder.checkpoints[-1].head
         if head.step == max(manifest.steps_done) and head.digests != manifest.world_digests:
-            what = "the digests of the worlds differ from those in the checkpoint of the last step"
-            folder.findings.append(Finding(MANIFEST, what))
+            message = "the digests of the worlds differ from those in the checkpoint of the last step"
+            folder.findings.append(Finding(MANIFEST, message))
 
 
 def _usable(folder: _Folder) -> Iterator[str]:
@@ -293,9 +293,9 @@ def _usable(folder: _Folder) -> Iterator[str]:
         return
     for table in TABLE_FOLDERS:
         parts = len(list((folder.path / table).glob("*.parquet")))
-        bad = sum(name.startswith(f"{table}/") for name in names)
+        damaged = sum(name.startswith(f"{table}/") for name in names)
         if parts:
-            yield f"{table}: {max(parts - bad, 0)} of {parts} files are undamaged"
+            yield f"{table}: {max(parts - damaged, 0)} of {parts} files are undamaged"
     for checkpoint in () if folder.driven else reversed(folder.checkpoints):
         step, parts = checkpoint.head.step, checkpoint.head.parts
         if folder.manifest is None or CONFIG in names:

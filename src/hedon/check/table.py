@@ -77,11 +77,11 @@ def _check_columns(name: str, rows: pl.DataFrame, table: Table) -> Iterator[Find
     schema = table.polars_schema
     missing = [column for column in schema if column not in rows.columns]
     unknown = [column for column in rows.columns if column not in schema]
-    other = [column for column in schema if column in rows.columns and rows.schema[column] != schema[column]]
-    for columns, what in (
+    mistyped = [column for column in schema if column in rows.columns and rows.schema[column] != schema[column]]
+    for columns, message in (
         (missing, "these columns are missing"),
         (unknown, "has unknown columns"),
-        (other, "these columns have a wrong type"),
+        (mistyped, "these columns have a wrong type"),
     ):
         if columns:
-            yield Finding(name, f"{what}: {', '.join(columns)}")
+            yield Finding(name, f"{message}: {', '.join(columns)}")
