@@ -103,8 +103,8 @@ def _section(kind: type[T], table: Mapping[str, Any], path: str, problems: list[
                 if isinstance(content, Mapping):
                     values[name][key] = _section(known_sections[name].type, content, f"{place}.{key}.", problems)
                 else:
-                    kind = next((k for k, section in value.items() if isinstance(section, Mapping)), f"<{name}>")
-                    suggestion = f"{place}.{kind}.{key}" if key in settings(known_sections[name].type) else None
+                    sibling = next((k for k, section in value.items() if isinstance(section, Mapping)), f"<{name}>")
+                    suggestion = f"{place}.{sibling}.{key}" if key in settings(known_sections[name].type) else None
                     problems.append(Problem(f"{place}.{key}", "must be a table", format_value(content), suggestion))
     return replace(default, **values)
 
