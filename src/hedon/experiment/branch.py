@@ -84,14 +84,14 @@ def plan_branch(
     old = open_run(folder).manifest
     config = load_config(folder / CONFIG)
     require_undriven(folder, config)
-    changed = load_config(folder / CONFIG, overrides=overrides)
+    branch_config = load_config(folder / CONFIG, overrides=overrides)
     step = None if at is None else argument.integer("at", at, 0, argument.MAX_STEPS)
     checkpoint, _ = find_checkpoint(folder, step)
     if checkpoint is None:
         raise RecordError(f"{folder} has no checkpoint to branch from")
     name = f"the checkpoint of {folder}"
     check_head(checkpoint.head, config, old.seeds, name)
-    _check_shape(config, changed)
+    _check_shape(config, branch_config)
     step = checkpoint.head.step
     total = old.steps_asked if steps is None else argument.integer("steps", steps, 1, argument.MAX_STEPS)
     if total <= step:
@@ -100,12 +100,23 @@ def plan_branch(
             "give the total with --steps"
         )
     parent = Parent(to_unicode(folder.resolve().name), digest(config), step)
-    place = out or free_folder(folder.parent / f"{folder.resolve().name}-branch{step}")
-    every = old.frames if frames is None else frames
+    branch_folder = out or free_folder(folder.parent / f"{folder.resolve().name}-branch{step}")
+    frame_interval = old.frames if frames is None else frames
     founders, networks = load_founders(folder, config), load_networks(folder, config)
     only = _world_of(old, of, config, futures=seeds is not None)
-    mine = old.seeds if seeds is None else argument.different(argument.seed_list(seeds))
-    plan = RunPlan(changed, mine, total, place, threads, every, checkpoint_seconds, founders, networks, rules=old.rules)
+    branch_seeds = old.seeds if seeds is None else argument.different(argument.seed_list(seeds))
+    plan = RunPlan(
+        branch_config,
+        branch_seeds,
+        total,
+        branch_folder,
+        threads,
+        frame_interval,
+        checkpoint_seconds,
+        founders,
+        networks,
+        rules=old.rules,
+    )
     parent = replace(parent, seed=None if only is None else old.seeds[only])
     return BranchPlan(plan, parent, checkpoint, same_backend(old.backend), only)
 
@@ -167,33 +178,34 @@ def branch(
     return start_branch(plan, callbacks)
 
 
-def _world_of(old: Manifest, of: int | None, config: Config, *, futures: bool) -> int | None:
+def _world_of(old: Manifest, seed: int | None, config: Config, *, futures: bool) -> int | None:
     """Index of the world that gets several futures; None if each world only continues.
 
     Raises:
         ArgumentError: The world does not exist, must be specified, or has obstacles that depend on its seed.
     """
     if not futures:
-        if of is not None:
-            raise ArgumentError(f"of = {of}: names the world that has several futures: give their seeds, too")
+        if seed is not None:
+            raise ArgumentError(f"of = {seed}: names the world that has several futures: give their seeds, too")
         return None
     if config.obstacle.count:
         raise ArgumentError("seeds: the places of obstacles follow from a world's seed, so it cannot have another one")
-    if of is None and len(old.seeds) == 1:
+    if seed is None and len(old.seeds) == 1:
         return 0
-    if of not in old.seeds:
-        said = "the run has several worlds: name one" if of is None else "the run has no such world"
-        raise ArgumentError(f"of = {of}: {said} of the seeds {', '.join(map(str, old.seeds))}")
-    return old.seeds.index(of)
+    if seed not in old.seeds:
+        problem = "the run has several worlds: name one" if seed is None else "the run has no such world"
+        raise ArgumentError(f"of = {seed}: {problem} of the seeds {', '.join(map(str, old.seeds))}")
+    return old.seeds.index(seed)
 
 
-def _check_shape(config: Config, changed: Config) -> None:
-    fixed = [
+def _check_shape(config: Config, branch_config: Config) -> None:
+    fixed_paths = [
         path
-        for path, _, _ in diff(config, changed)
-        if fixed_path(path) or (path.endswith(".at_zero") and columns_of(config).causes != columns_of(changed).causes)
+        for path, _, _ in diff(config, branch_config)
+        if fixed_path(path)
+        or (path.endswith(".at_zero") and columns_of(config).causes != columns_of(branch_config).causes)
     ]
-    if fixed:
+    if fixed_paths:
         raise RecordError(
-            f"a branch cannot change {', '.join(fixed)}: the saved worlds depend on it; begin a new run instead"
+            f"a branch cannot change {', '.join(fixed_paths)}: the saved worlds depend on it; begin a new run instead"
         )

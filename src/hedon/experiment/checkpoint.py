@@ -30,11 +30,11 @@ def check_head(head: CheckpointHead, config: Config, seeds: tuple[int, ...], nam
     Raises:
         RecordError: The version, a setting or the seeds differ; the message gives the difference.
     """
-    here = version("hedon")
-    if head.hedon_version != here:
+    current = version("hedon")
+    if head.hedon_version != current:
         raise RecordError(
-            f"{name} was made by hedon {head.hedon_version}, and this is {here}, which may compute different results: "
-            f"install hedon {head.hedon_version} to continue"
+            f"{name} was made by hedon {head.hedon_version}, and this is {current}, which may compute different "
+            f"results: install hedon {head.hedon_version} to continue"
         )
     config_name = f"config in {name}"
     if parse_toml(head.config, config_name).get("schema") != SCHEMA:
@@ -77,16 +77,16 @@ def same_backend(backend: str | None) -> str:
         RecordError: HEDON_BACKEND names one with different bits.
     """
     family = next((names for names in SAME_BITS if backend in names), frozenset({backend}))
-    asked = os.environ.get(BACKEND_VARIABLE, "")
-    if asked and backend is not None and asked not in family:
+    requested = os.environ.get(BACKEND_VARIABLE, "")
+    if requested and backend is not None and requested not in family:
         raise RecordError(
-            f"the run was made with the instruction set {backend}, and {BACKEND_VARIABLE} is {asked}, which "
+            f"the run was made with the instruction set {backend}, and {BACKEND_VARIABLE} is {requested}, which "
             f"computes different results: unset {BACKEND_VARIABLE}"
         )
-    if not asked and backend is not None and is_device(backend) and not device_problem(backend):
+    if not requested and backend is not None and is_device(backend) and not device_problem(backend):
         return backend
-    known = [name for name in _engine.kernel.kernel_names() if name in family]
-    return asked or (known[0] if known else backend or "")
+    available = [name for name in _engine.kernel.kernel_names() if name in family]
+    return requested or (available[0] if available else backend or "")
 
 
 def restore(simulation: Simulation, checkpoint: Checkpoint, name: str, only: int | None = None) -> Start:
@@ -112,13 +112,13 @@ def restore(simulation: Simulation, checkpoint: Checkpoint, name: str, only: int
             simulation.engine.restore(world.index, checkpoint.world(index))
         except ValueError as error:
             raise RecordError(f"{name} does not fit: world {index}: {error}") from None
-        now = [PopulationSampler(world, i).since for i in range(species)]
-        then = head.sampled[index * species : (index + 1) * species]
-        sampled += then
-        same_names = [(each.counters.keys(), len(each.eaten)) for each in now] == [
-            (each.counters.keys(), len(each.eaten)) for each in then
+        current = [PopulationSampler(world, i).since for i in range(species)]
+        saved = head.sampled[index * species : (index + 1) * species]
+        sampled += saved
+        matches = [(sample.counters.keys(), len(sample.eaten)) for sample in current] == [
+            (sample.counters.keys(), len(sample.eaten)) for sample in saved
         ]
-        if world.digest() != head.digests[index] or not same_names or not (world.extinct or world.step == head.step):
+        if world.digest() != head.digests[index] or not matches or not (world.extinct or world.step == head.step):
             raise RecordError(f"{name} is damaged: world {index} is not as it was saved")
     checkpoint.arrays.clear()
     return Start(head.step, head.run_seconds, tuple(sampled))

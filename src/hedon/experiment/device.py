@@ -22,11 +22,11 @@ worlds by 560 to 1,140 steps a second, and a core makes about 1,800 (docs/gpu.md
 
 def few_worlds(worlds: int, cores: int) -> str:
     """A sentence for a run with too few worlds to keep a device busy; empty for more."""
-    enough = WORLDS_PER_CORE * cores
-    if worlds >= enough:
+    threshold = WORLDS_PER_CORE * cores
+    if worlds >= threshold:
         return ""
     return (
-        f"With fewer than about {enough} worlds, the processor ({count(cores, 'core')}) is probably faster than a "
+        f"With fewer than about {threshold} worlds, the processor ({count(cores, 'core')}) is probably faster than a "
         "device: leave --backend out."
     )
 

@@ -24,10 +24,10 @@ class Interrupts:
 @contextmanager
 def count_interrupts() -> Iterator[Interrupts]:
     """Counts the signals that ask the run to end, until the block ends. A pipe closed before counts too."""
-    seen = Interrupts(_noted.count(PIPE))
+    interrupts = Interrupts(_noted.count(PIPE))
     with ExitStack() as stack:
-        _counting.append(seen)
-        stack.callback(_counting.remove, seen)
+        _counting.append(interrupts)
+        stack.callback(_counting.remove, interrupts)
         try:
             for number in SIGNALS:
                 if number != signal.SIGINT and signal.getsignal(number) is signal.SIG_IGN:
@@ -35,14 +35,14 @@ def count_interrupts() -> Iterator[Interrupts]:
                 stack.callback(signal.signal, number, signal.signal(number, lambda number, frame: note(number)))
         except ValueError:  # not in the main thread, where Python handles no signals
             pass
-        yield seen
+        yield interrupts
 
 
 def note(number: int) -> None:
     """Counts a signal or an equivalent event."""
     _noted.append(number)
-    for seen in _counting:
-        seen.count += 1
+    for interrupts in _counting:
+        interrupts.count += 1
 
 
 def interrupted_code() -> int:

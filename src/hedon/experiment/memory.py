@@ -29,15 +29,15 @@ class MemoryNeedError(HedonError):
 
 def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, int]:
     """Peak memory of a run, by purpose [byte]."""
-    given = engine_input(config)
-    need = _engine.memory_needed(given.settings, len(given.walls), worlds, threads)
+    inputs = engine_input(config)
+    sizes = _engine.memory_needed(inputs.settings, len(inputs.walls), worlds, threads)
     tables = run_tables(columns_of(config)).values()
     return {
-        "networks": need["networks"],
-        COLD: need["cold"],
-        "the rest of rollouts": need["rollouts"],
-        "physics": need["physics"],
-        "rest of the worlds": need["rest"],
+        "networks": sizes["networks"],
+        COLD: sizes["cold"],
+        "the rest of rollouts": sizes["rollouts"],
+        "physics": sizes["physics"],
+        "rest of the worlds": sizes["rest"],
         # Rows stay in memory until their part is full; joining and writing the part needs copies.
         "records": 3 * PART_ROWS * LARGEST_VALUE * sum(len(table.columns) for table in tables),
     }
@@ -45,15 +45,15 @@ def memory_needed(config: Config, worlds: int, threads: int = 0) -> dict[str, in
 
 def memory_present(limits: Sequence[str] = CONTROL_GROUP_LIMITS) -> int:
     """Memory available to this process, limited by the machine, its container or `ulimit -v` [byte]."""
-    present = _engine.physical_memory()
+    available = _engine.physical_memory()
     if (addresses := address_limit()) is not None:
-        present = min(present, addresses)
+        available = min(available, addresses)
     for path in limits:
         try:
-            present = min(present, int(Path(path).read_text()))
+            available = min(available, int(Path(path).read_text()))
         except (OSError, ValueError):  # not this version, or "max"
             continue
-    return present
+    return available
 
 
 def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
@@ -62,21 +62,21 @@ def require_memory(config: Config, worlds: int, threads: int = 0) -> None:
     Raises:
         MemoryNeedError: The run needs more than is available; the message lists the purposes.
     """
-    need, present = memory_needed(config, worlds, threads), memory_present()
-    slots = sum(own.population.capacity for own in config.species.values())
+    sizes, available = memory_needed(config, worlds, threads), memory_present()
+    slots = sum(species.population.capacity for species in config.species.values())
     remedy = (
         f"lower population.capacity ({slots:,}), world.rollout_steps ({config.world.rollout_steps:,}) or the number of "
         f"seeds ({worlds:,})"
     )
     scratch = os.environ.get(SCRATCH_VARIABLE, "")
     if scratch:
-        _require_room(scratch, need.pop(COLD), remedy)
-    total = sum(need.values())
-    if total > present:
-        parts = ", ".join(f"{name} {size / 1e9:.1f}" for name, size in need.items())
+        _require_room(scratch, sizes.pop(COLD), remedy)
+    total = sum(sizes.values())
+    if total > available:
+        parts = ", ".join(f"{name} {size / 1e9:.1f}" for name, size in sizes.items())
         other = "" if scratch else f", or set {SCRATCH_VARIABLE} to a folder that can take the {COLD}"
         raise MemoryNeedError(
-            f"the run may need {total / 1e9:.1f} GB of memory, and there are {present / 1e9:.1f} GB ({parts}): "
+            f"the run may need {total / 1e9:.1f} GB of memory, and there are {available / 1e9:.1f} GB ({parts}): "
             f"{remedy}{other}"
         )
 

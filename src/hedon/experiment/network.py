@@ -24,10 +24,12 @@ def networks_from(text: str, config: Config) -> Networks:
         RecordError: The run cannot be read.
     """
     path = Path(text)
-    found = read_networks(path) if path.is_file() else _of_run(path)
-    found.require(config, text)
-    wanted = fixed_species(config)
-    return Networks({name: found.params[name] for name in wanted}, {name: found.inputs[name] for name in wanted})
+    networks = read_networks(path) if path.is_file() else _of_run(path)
+    networks.require(config, text)
+    species_names = fixed_species(config)
+    return Networks(
+        {name: networks.params[name] for name in species_names}, {name: networks.inputs[name] for name in species_names}
+    )
 
 
 def _of_run(folder: Path) -> Networks:
@@ -55,15 +57,15 @@ def _learned(checkpoint: Checkpoint, config: Config, name: str, world: int) -> N
     """Networks of the agents of a species that have learned, (agents, parameters)."""
     arrays = checkpoint.world(world)
     policies = [species.learning.policy for species in config.species.values()]
-    mine = list(config.species).index(name)
-    if policies[mine] not in ("ppo", "fixed"):
+    species_index = list(config.species).index(name)
+    if policies[species_index] not in ("ppo", "fixed"):
         return np.zeros((0, 0), np.float32)
     species = arrays.get("species", np.zeros(len(arrays["life.agent_id"]), np.int32))
     with_network = species[np.isin(species, [i for i, policy in enumerate(policies) if policy in ("ppo", "fixed")])]
-    rows = arrays["params"][with_network == mine]
-    if policies[mine] == "ppo":
+    rows = arrays["params"][with_network == species_index]
+    if policies[species_index] == "ppo":
         learners = species[np.isin(species, [i for i, policy in enumerate(policies) if policy == "ppo"])]
-        rows = rows[arrays["updates"][learners == mine] > 0]
+        rows = rows[arrays["updates"][learners == species_index] > 0]
     return rows[:, : _engine.learning.param_count(_network_shape(config, name))]
 
 
@@ -71,5 +73,5 @@ def _network_shape(config: Config, name: str) -> tuple[int, int, int, int]:
     """Numbers of a species' network inputs: rays, types that rays distinguish, touch entries, and all other entries."""
     sensor, layout = config.species[name].sensor, layouts(config)[name]
     touches = len(layout.touches) * sensor.touch_sectors
-    rest = len(observation_columns(config, name)) - sensor.ray_count * len(layout.sees) - touches
-    return sensor.ray_count, len(layout.sees), touches, rest
+    other_entries = len(observation_columns(config, name)) - sensor.ray_count * len(layout.sees) - touches
+    return sensor.ray_count, len(layout.sees), touches, other_entries

@@ -82,9 +82,9 @@ class RunPlan:
     ) -> None:
         config = _without_caller(validated(config))
         require_measures(config)
-        found = find_rules(config, rules)
+        loaded_rules = find_rules(config, rules)
         checked = {
-            "config": _with_networks(_with_founders(pinned(config, found), founders), networks),
+            "config": _with_networks(_with_founders(pinned(config, loaded_rules), founders), networks),
             "seeds": different(seed_list(seeds)),
             "steps": integer("steps", steps, 1, MAX_STEPS),
             "out": folder("out", out),
@@ -94,7 +94,7 @@ class RunPlan:
             "founders": founders,
             "networks": networks,
             "backend": backend,
-            "rules": tuple(rule.source for rule in found),
+            "rules": tuple(rule.source for rule in loaded_rules),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
@@ -137,16 +137,16 @@ def together(callbacks: Iterable[Callback]) -> Callback | None:
     """
     if not isinstance(callbacks, Iterable):
         raise ArgumentError(f"callbacks: must be a list of functions of a moment, not {brief(repr(callbacks))}")
-    every = list(callbacks)
-    for each in every:
-        if not callable(each):
-            raise ArgumentError(f"callbacks: must be functions of a moment, not {brief(repr(each))}")
-    if len(every) < 2:
-        return every[0] if every else None
+    callback_list = list(callbacks)
+    for callback in callback_list:
+        if not callable(callback):
+            raise ArgumentError(f"callbacks: must be functions of a moment, not {brief(repr(callback))}")
+    if len(callback_list) < 2:
+        return callback_list[0] if callback_list else None
 
     def call(moment: Moment) -> None:
-        for each in every:
-            each(moment)
+        for callback in callback_list:
+            callback(moment)
 
     return call
 

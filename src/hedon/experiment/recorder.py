@@ -73,8 +73,8 @@ class Recorder:
         self.writer = writer
         self.frames = frames
         sampled = [(world, species) for world in self.worlds for species in range(len(world.config.species))]
-        since = start.sampled or (None,) * len(sampled)
-        self.samplers = [PopulationSampler(*which, at) for which, at in zip(sampled, since, strict=True)]
+        previous = start.sampled or (None,) * len(sampled)
+        self.samplers = [PopulationSampler(*pair, sample) for pair, sample in zip(sampled, previous, strict=True)]
         self.rows = [sampler.row() for sampler in self.samplers]
         self.last_deaths: dict[tuple[int, int], int] = {}  # by world and species
         self.first = start.step
@@ -92,23 +92,23 @@ class Recorder:
             EngineError: Too many agents died since the last call, so some are lost, and `partial` is false.
         """
         for world in self.worlds:
-            lives = world._take_deaths(partial=partial)
-            if len(lives["agent_id"]):
-                self.writer.append("agents", agent_rows(world, lives))
-            for species in np.unique(lives["species"]).tolist():
-                last = int(lives["death_step"][lives["species"] == species].max())
-                self.last_deaths[world.row, species] = last
+            dead_agents = world._take_deaths(partial=partial)
+            if len(dead_agents["agent_id"]):
+                self.writer.append("agents", agent_rows(world, dead_agents))
+            for species in np.unique(dead_agents["species"]).tolist():
+                last_step = int(dead_agents["death_step"][dead_agents["species"] == species].max())
+                self.last_deaths[world.row, species] = last_step
         if time.perf_counter() >= self.flush_due:
             self.living()
 
     def interval(self) -> None:
         """Writes one population row per world and species that advanced since its last row."""
-        grown = [i for i, sampler in enumerate(self.samplers) if sampler.world.step != sampler.since.step]
-        for i in grown:
+        advanced = [i for i, sampler in enumerate(self.samplers) if sampler.world.step != sampler.since.step]
+        for i in advanced:
             self.rows[i] = self.samplers[i].row()
             self.samplers[i].advance()
-        if grown:
-            self.writer.append("population", *(self.rows[i] for i in grown))
+        if advanced:
+            self.writer.append("population", *(self.rows[i] for i in advanced))
         if not self.shown:  # write the first rows immediately, so that a reader sees that the run has started
             self.living()
             self.writer.flush()
@@ -129,13 +129,13 @@ class Recorder:
         self.deaths()
         self.interval()
         self.left.append(agent_rows(world, world.agents()))
-        kept = [i for i, sampler in enumerate(self.samplers) if sampler.world is not world]
-        self.samplers, self.rows = [self.samplers[i] for i in kept], [self.rows[i] for i in kept]
+        remaining = [i for i, sampler in enumerate(self.samplers) if sampler.world is not world]
+        self.samplers, self.rows = [self.samplers[i] for i in remaining], [self.rows[i] for i in remaining]
         self.worlds.remove(world)
 
     def frame(self) -> None:
         """Writes the current state of every agent and food of every world that is not extinct."""
-        rows = [each for world in self.worlds if not world.extinct for each in frame_rows(world)]
+        rows = [row for world in self.worlds if not world.extinct for row in frame_rows(world)]
         if rows:
             self.writer.append("frames", *rows)
 
@@ -159,12 +159,12 @@ class Recorder:
         if step == self.saved:
             self.writer.flush()
             return
-        begun = time.perf_counter()
+        started = time.perf_counter()
         self.writer.save_checkpoint(self._head(step, seconds), self._fill)
         self.saved, now = step, time.perf_counter()
         self.next_checkpoint = now
         if self.checkpoint_seconds > 0:
-            self.next_checkpoint += max(self.checkpoint_seconds, PACE * (now - begun))
+            self.next_checkpoint += max(self.checkpoint_seconds, PACE * (now - started))
 
     def fault(self, seconds: float) -> None:
         """Saves the worlds after one of them has stopped at a fault, and the agents that died before it."""
@@ -190,11 +190,11 @@ class Recorder:
             digests=tuple(digests),
         )
 
-    def _fill(self, out: ArrayWriter) -> None:
+    def _fill(self, archive: ArrayWriter) -> None:
         """Writes the arrays of all worlds, which the engine gives in pieces."""
         for world in self.worlds:
             with suppress(EngineError):  # as above
-                self.simulation.engine.save_to(world.index, partial(_begin, out, world.row), out.piece)
+                self.simulation.engine.save_to(world.index, partial(_begin, archive, world.row), archive.piece)
 
     def moment(self, step: int, steps: int, seconds: float) -> Moment:
         """The state that a display shows.
@@ -212,9 +212,9 @@ class Recorder:
         world, species = sampler.world, sampler.species
         if not sampler.columns.several:
             return world.extinct_step
-        lives = bool((world.view("species")[world.living] == species).any())
-        return None if lives else self.last_deaths.get((world.row, species))
+        is_alive = bool((world.view("species")[world.living] == species).any())
+        return None if is_alive else self.last_deaths.get((world.row, species))
 
 
-def _begin(out: ArrayWriter, world: int, name: str, dtype: str, shape: list[int]) -> None:
-    out.begin(f"{world}/{name}", dtype, shape)
+def _begin(archive: ArrayWriter, world: int, name: str, dtype: str, shape: list[int]) -> None:
+    archive.begin(f"{world}/{name}", dtype, shape)

@@ -101,9 +101,9 @@ def lock(
         )
         notes = [f"{fault}: continuing from the checkpoint before it" for fault in faults]
         notes += [*_device_notes(manifest), *_source_notes(manifest), *_rule_notes(manifest)]
-        found = Resumption(plan, manifest, checkpoint, tuple(notes))
-        _check_steps(found)
-        yield found
+        resumption = Resumption(plan, manifest, checkpoint, tuple(notes))
+        _check_steps(resumption)
+        yield resumption
 
 
 def resume(
@@ -131,8 +131,8 @@ def resume(
         MemoryNeedError: The run needs more memory than there is.
         EngineError: A world reports an error.
     """
-    with lock(folder, steps, threads, checkpoint_seconds) as found:
-        return continue_run(found, callbacks)
+    with lock(folder, steps, threads, checkpoint_seconds) as resumption:
+        return continue_run(resumption, callbacks)
 
 
 def make(plan: RunPlan, callbacks: Iterable[Callback] = ()) -> Manifest:
@@ -159,8 +159,8 @@ def is_finished(manifest: Manifest, steps: int) -> bool:
         manifest: Manifest of the run.
         steps: Number of steps that it should have [step].
     """
-    over = bool(manifest.extinct_steps) and None not in manifest.extinct_steps
-    return manifest.status == "finished" and (over or max(manifest.steps_done) >= steps)
+    all_extinct = bool(manifest.extinct_steps) and None not in manifest.extinct_steps
+    return manifest.status == "finished" and (all_extinct or max(manifest.steps_done) >= steps)
 
 
 def require_setting(folder: Path, config_digest: str, seeds: Sequence[int] | None = None) -> None:
@@ -215,14 +215,14 @@ def _device_notes(manifest: Manifest) -> list[str]:
     return [f"{problem}: continuing on the processor, with the same bits"] if problem else []
 
 
-def _check_steps(found: Resumption) -> None:
-    plan, manifest, step = found.plan, found.manifest, found.step
-    whole = manifest.status == "finished"
-    if whole and all(extinct is not None for extinct in manifest.extinct_steps):
+def _check_steps(resumption: Resumption) -> None:
+    plan, manifest, step = resumption.plan, resumption.manifest, resumption.step
+    finished = manifest.status == "finished"
+    if finished and all(extinct is not None for extinct in manifest.extinct_steps):
         raise RecordError(
             f"{plan.out} is finished: every world has died out, the last at step {max(manifest.steps_done):,}"
         )
-    if whole and plan.steps == step:
+    if finished and plan.steps == step:
         raise RecordError(f"{plan.out} has already done all its {step:,} steps: give a larger total with --steps")
     if plan.steps < step:
         raise RecordError(
@@ -232,12 +232,12 @@ def _check_steps(found: Resumption) -> None:
 
 def _source_notes(manifest: Manifest) -> list[str]:
     """A note if hedon's source has changed since, which can change results."""
-    before = manifest.sessions[-1].git_revision if manifest.sessions else manifest.git_revision
-    now, _ = git_revision(Path(__file__).resolve().parent)
-    if before is None or now is None or before == now:
+    previous = manifest.sessions[-1].git_revision if manifest.sessions else manifest.git_revision
+    current, _ = git_revision(Path(__file__).resolve().parent)
+    if previous is None or current is None or previous == current:
         return []
     return [
-        f"hedon's source has changed since (revision {before[:12]}, now {now[:12]}): "
+        f"hedon's source has changed since (revision {previous[:12]}, now {current[:12]}): "
         "only the same source is certain to give the same results"
     ]
 

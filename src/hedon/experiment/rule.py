@@ -66,22 +66,24 @@ class Rule:
         Raises:
             RuleError: The file fails, has no such function, or the function takes more than an agent.
         """
-        scope: dict[str, Any] = {"__name__": "hedon_rule", "__file__": self.source.file}
+        namespace: dict[str, Any] = {"__name__": "hedon_rule", "__file__": self.source.file}
         self._refuse_unpinned()
         try:
-            exec(compile(self.source.text, self.source.file, "exec"), scope)
+            exec(compile(self.source.text, self.source.file, "exec"), namespace)
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a file may raise anything, not only an Exception
             raise self._error(failure(error, self.source.file)) from error
-        found = scope.get(self.source.name)
-        function = getattr(found, "py_func", found)  # unwraps a function that Numba has already compiled
-        if found is not None and not isinstance(function, FunctionType):
-            raise self._error(f"{self.source.name} is {brief(repr(found), 40)}: a rule is a function, written with def")
+        definition = namespace.get(self.source.name)
+        function = getattr(definition, "py_func", definition)  # unwraps a function that Numba has already compiled
+        if definition is not None and not isinstance(function, FunctionType):
+            raise self._error(
+                f"{self.source.name} is {brief(repr(definition), 40)}: a rule is a function, written with def"
+            )
         if not isinstance(function, FunctionType):
-            known = [name for name, value in scope.items() if callable(value) and not name.startswith("_")]
-            near = nearest(self.source.name, known)
-            hint = f"; did you mean {near}?" if near else ""
+            function_names = [name for name, value in namespace.items() if callable(value) and not name.startswith("_")]
+            suggestion = nearest(self.source.name, function_names)
+            hint = f"; did you mean {suggestion}?" if suggestion else ""
             raise self._error(f"the file has no function {self.source.name}{hint}")
         if iscoroutinefunction(function):
             raise self._error(f"{self.source.name} must be a plain function, without async")
@@ -89,15 +91,15 @@ class Rule:
             signature(function).bind(None)
         except TypeError as error:
             raise self._error(f"a rule takes one agent, but this is {self.source.name}{signature(function)}") from error
-        if refused := refusal(self.source.text, self.source.name, self.columns):
-            raise self._error(refused)
+        if reason := refusal(self.source.text, self.source.name, self.columns):
+            raise self._error(reason)
         return function
 
     def _refuse_unpinned(self) -> None:
         """Raises RuleError, before running the file, if it uses something from elsewhere that no run keeps."""
         with suppress(SyntaxError, ValueError):  # reported when the file is run
-            if found := unpinned(self.source.text):
-                raise self._error(found)
+            if problem := unpinned(self.source.text):
+                raise self._error(problem)
 
     def answers(self, records: NDArray[Any]) -> NDArray[np.float64]:
         """Results of the rule, computed in plain Python.
@@ -125,9 +127,9 @@ class Rule:
         function = numba.njit(error_model="numpy")(self.function)
 
         def answer(count: Any, records: Any, answers: Any) -> None:
-            agents, out = numba.carray(records, count), numba.carray(answers, count)
+            agents, results = numba.carray(records, count), numba.carray(answers, count)
             for i in range(count):
-                out[i] = function(agents[i])
+                results[i] = function(agents[i])
 
         record = numba.from_dtype(self._dtype)
         types = numba.types.void(
@@ -139,8 +141,8 @@ class Rule:
         except KeyError as error:  # a field that the record does not have
             name = str(error.args[0])
             self._refuse_neutral(f"'{name}'", error)
-            near = nearest(name, self._seen)
-            hint = f"; did you mean {near}?" if near else ""
+            suggestion = nearest(name, self._seen)
+            hint = f"; did you mean {suggestion}?" if suggestion else ""
             if name.startswith("memory_"):
                 hint = f": set reward.memory to {name.removeprefix('memory_')} or more"
             raise self._error(f"an agent has no {name}{hint}; it has {', '.join(self._seen)}") from error
@@ -150,10 +152,10 @@ class Rule:
             self._refuse_neutral(" ".join(str(error).split()), error)
             raise self._error(cause(error, self.source.file)) from error
 
-    def _refuse_neutral(self, said: str, error: BaseException) -> None:
+    def _refuse_neutral(self, message: str, error: BaseException) -> None:
         """Raises RuleError if a field reported as missing is a neutral gene."""
         for name in self.neutral:
-            if f"'{name}'" in said:
+            if f"'{name}'" in message:
                 raise self._error(
                     f"it reads {name}, a neutral gene: that shows drift because nothing reads it, so no rule may; "
                     f"genes that it may read are {', '.join(self.genes) or 'none'}, and what genome.extra adds: "
@@ -205,9 +207,9 @@ def pinned(config: Config, found: Sequence[Rule]) -> Config:
     """The config with the names and digests of its rules' files, without their folders."""
     agents = dict(config.species)
     for rule in found:
-        own = agents[rule.species]
-        section = replace(getattr(own, rule.use), rule=rule.source.place)
-        agents[rule.species] = replace(own, **{rule.use: section})
+        species = agents[rule.species]
+        section = replace(getattr(species, rule.use), rule=rule.source.place)
+        agents[rule.species] = replace(species, **{rule.use: section})
     return replace(config, species=agents)
 
 
@@ -232,37 +234,37 @@ def changed_files(kept: Sequence[RuleSource]) -> tuple[str, ...]:
 @contextmanager
 def _bounds_checked(settings: Any) -> Iterator[None]:
     """Makes Numba compile functions with checks of their indices, including functions that a rule calls."""
-    before, settings.BOUNDSCHECK = settings.BOUNDSCHECK, 1
+    previous, settings.BOUNDSCHECK = settings.BOUNDSCHECK, 1
     try:
         yield
     finally:
-        settings.BOUNDSCHECK = before
+        settings.BOUNDSCHECK = previous
 
 
 def _source(place: str, kept: Sequence[RuleSource]) -> RuleSource:
     match = re.fullmatch(RULE_PATTERN, place)
     if match is None:
         raise ArgumentError(f"rule {brief(place)!r}: must be FILE.py:NAME")
-    file, name, wanted = match.groups()
+    file, name, expected_digest = match.groups()
     for source in kept:
-        if (source.name, source.digest) != (name, wanted):
+        if (source.name, source.digest) != (name, expected_digest):
             continue
-        if _digest(source.text) != wanted:
+        if _digest(source.text) != expected_digest:
             raise RuleError(f"rule {place}: the text that the manifest keeps is another one: its digest does not agree")
         return replace(source, file=file)
-    return _read(place, file, name, wanted)
+    return _read(place, file, name, expected_digest)
 
 
-def _read(place: str, file: str, name: str, wanted: str | None) -> RuleSource:
+def _read(place: str, file: str, name: str, expected_digest: str | None) -> RuleSource:
     try:
         text = _text(Path(file))
     except (OSError, ValueError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or brief(str(error))
-        where = "" if Path(file).is_absolute() else f" in {Path.cwd()}"
-        hint = "; the manifest of a run that has it keeps its text: give its rules" if wanted else ""
-        raise RuleError(f"rule {place}: cannot read {file}{where}: {reason}{hint}") from error
+        location = "" if Path(file).is_absolute() else f" in {Path.cwd()}"
+        hint = "; the manifest of a run that has it keeps its text: give its rules" if expected_digest else ""
+        raise RuleError(f"rule {place}: cannot read {file}{location}: {reason}{hint}") from error
     digest = _digest(text)
-    if wanted not in (None, digest):
+    if expected_digest not in (None, digest):
         raise RuleError(
             f"rule {place}: {file} has changed since, its digest is now {digest}: give the text that the run's "
             "manifest keeps (rules), or name the new rule as FILE.py:NAME in a new run or a branch"
@@ -275,9 +277,9 @@ def _digest(text: str) -> str:
 
 
 def _text(path: Path) -> str:
-    about = path.stat()
-    if not S_ISREG(about.st_mode):
+    status = path.stat()
+    if not S_ISREG(status.st_mode):
         raise ValueError("it is no plain file")
-    if about.st_size > MAX_BYTES:
+    if status.st_size > MAX_BYTES:
         raise ValueError(f"it is too large for a rule (at most {MAX_BYTES:,} bytes)")
     return path.read_text(encoding="utf-8")

@@ -34,10 +34,10 @@ def refusal(text: str, name: str, columns: Collection[str]) -> str:
     for node in _reached(tree, name):
         if id(node) in seeded:
             continue
-        if (path := _dotted(node, places)) is not None and (found := _source_of(path)):
-            what = "the time" if found in CLOCKS else "chance"
+        if (path := _dotted(node, places)) is not None and (source := _source_of(path)):
+            kind = "the time" if source in CLOCKS else "chance"
             return (
-                f"line {node.lineno}: {path} is {what}, with which no run could be repeated; a hazard or birth rule "
+                f"line {node.lineno}: {path} is {kind}, with which no run could be repeated; a hazard or birth rule "
                 "returns a probability and hedon draws from the world's seed, and agent.step is the time"
             )
         if (field := _written(node)) in columns and not field.startswith(MEMORY):
@@ -60,11 +60,11 @@ def unpinned(text: str) -> str:
     for node in ast.walk(ast.parse(text)):
         if _reads_file(node):
             return f"line {node.lineno}: it reads a file, which no run keeps: put what it needs into the rule's file"
-        if isinstance(node, ast.ImportFrom) and any(each.name == "*" for each in node.names):
+        if isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names):
             return f"line {node.lineno}: it imports * from {node.module}: import by name what it uses"
         if not isinstance(node, ast.Import | ast.ImportFrom):
             continue
-        modules = [each.name for each in node.names] if isinstance(node, ast.Import) else [node.module or "."]
+        modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or "."]
         for module in modules:
             if not _is_installed(module.partition(".")[0]):
                 return (
@@ -78,9 +78,9 @@ def _reads_file(node: ast.AST) -> TypeGuard[ast.Call]:
     """Whether a node calls `open` or a method that reads files."""
     if not isinstance(node, ast.Call):
         return False
-    called = node.func
-    return (isinstance(called, ast.Name) and called.id == "open") or (
-        isinstance(called, ast.Attribute) and called.attr in ("open", *READERS)
+    function = node.func
+    return (isinstance(function, ast.Name) and function.id == "open") or (
+        isinstance(function, ast.Attribute) and function.attr in ("open", *READERS)
     )
 
 
@@ -102,54 +102,54 @@ def _is_installed(module: str) -> bool:
 
 def failure(error: BaseException, file: str) -> str:
     """Why Python cannot read a rule's file, or why the file fails."""
-    line, said = None, brief(repr(error))
+    line, message = None, brief(repr(error))
     if isinstance(error, SyntaxError):
-        line, said = error.lineno, f"{type(error).__name__}: {error.msg}"
+        line, message = error.lineno, f"{type(error).__name__}: {error.msg}"
     trace = error.__traceback__
     while trace is not None and not isinstance(error, SyntaxError):
         line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == file else line
         trace = trace.tb_next
-    return f"its file fails{f' at line {line}' if line else ''}: {said}"
+    return f"its file fails{f' at line {line}' if line else ''}: {message}"
 
 
 def cause(error: BaseException, file: str) -> str:
     """Why Numba cannot compile a rule, without Numba's trace."""
     text = str(error)
-    own = re.findall(rf'File "(?:[^"]*/)?{re.escape(file)}", line (\d+)|\b{re.escape(file)} \((\d+)\)', text)
-    returned = _RETURNED.search(text)
-    if returned and not own:
-        return f"it returns {brief(returned[1], 40)}: a rule returns one number"
+    matches = re.findall(rf'File "(?:[^"]*/)?{re.escape(file)}", line (\d+)|\b{re.escape(file)} \((\d+)\)', text)
+    return_match = _RETURNED.search(text)
+    if return_match and not matches:
+        return f"it returns {brief(return_match[1], 40)}: a rule returns one number"
     lines = [line.strip() for line in text.splitlines()]
-    said = next((line for line in lines if not _NOISE.match(line)), type(error).__name__)
+    message = next((line for line in lines if not _NOISE.match(line)), type(error).__name__)
     call = next((line.removeprefix(">>> ") for line in lines if line.startswith(">>>")), "")
-    said = re.sub(r"\s*(found\.)?\s*Raised from .*", "", said)
-    said += f" {call}" if said.endswith(":") else ""
-    place = f" line {own[0][0] or own[0][1]}" if own else ""
-    return f"Numba cannot compile{place or ' it'}: {brief(said)}"
+    message = re.sub(r"\s*(found\.)?\s*Raised from .*", "", message)
+    message += f" {call}" if message.endswith(":") else ""
+    location = f" line {matches[0][0] or matches[0][1]}" if matches else ""
+    return f"Numba cannot compile{location or ' it'}: {brief(message)}"
 
 
 def _reached(tree: ast.Module, name: str) -> Iterator[Any]:
     """Yields all nodes that define a name of the file, and those that define the names that these use."""
     bound: dict[str, list[ast.AST]] = {}
     for statement in tree.body:
-        for each in _names(statement):
-            bound.setdefault(each, []).append(statement)
-    left, seen = [name], {name}
-    while left:
-        for statement in bound.get(left.pop(), []):
+        for bound_name in _names(statement):
+            bound.setdefault(bound_name, []).append(statement)
+    pending, seen = [name], {name}
+    while pending:
+        for statement in bound.get(pending.pop(), []):
             for node in ast.walk(statement):
                 yield node
                 if isinstance(node, ast.Name) and node.id not in seen:
                     seen.add(node.id)
-                    left.append(node.id)
+                    pending.append(node.id)
 
 
 def _names(statement: ast.AST) -> set[str]:
     """Names that a statement binds in the file, without those within functions and classes."""
     if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
         return {statement.name}
-    own = {statement.id} if isinstance(statement, ast.Name) and isinstance(statement.ctx, ast.Store) else set()
-    return own.union(*map(_names, ast.iter_child_nodes(statement)))
+    names = {statement.id} if isinstance(statement, ast.Name) and isinstance(statement.ctx, ast.Store) else set()
+    return names.union(*map(_names, ast.iter_child_nodes(statement)))
 
 
 def _imported(tree: ast.Module) -> dict[str, str]:
@@ -157,25 +157,25 @@ def _imported(tree: ast.Module) -> dict[str, str]:
     places = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            for each in node.names:
-                places[each.asname or each.name.partition(".")[0]] = (
-                    each.name if each.asname else each.name.partition(".")[0]
+            for alias in node.names:
+                places[alias.asname or alias.name.partition(".")[0]] = (
+                    alias.name if alias.asname else alias.name.partition(".")[0]
                 )
         elif isinstance(node, ast.ImportFrom):
-            places |= {each.asname or each.name: f"{node.module}.{each.name}" for each in node.names}
+            places |= {alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names}
     return places
 
 
 def _dotted(node: ast.AST, places: dict[str, str]) -> str | None:
     """Full name that a node reads; None if it is not from a module."""
     if isinstance(node, ast.Attribute):
-        before = _dotted(node.value, places)
-        return None if before is None else f"{before}.{node.attr}"
+        prefix = _dotted(node.value, places)
+        return None if prefix is None else f"{prefix}.{node.attr}"
     return places.get(node.id) if isinstance(node, ast.Name) else None
 
 
 def _source_of(path: str) -> str:
-    return next((each for each in (*CHANCE, *CLOCKS) if path == each or path.startswith(f"{each}.")), "")
+    return next((source for source in (*CHANCE, *CLOCKS) if path == source or path.startswith(f"{source}.")), "")
 
 
 def _is_seeded(node: ast.AST, places: dict[str, str]) -> bool:
@@ -183,7 +183,7 @@ def _is_seeded(node: ast.AST, places: dict[str, str]) -> bool:
     return (
         isinstance(node, ast.Call)
         and _dotted(node.func, places) in SEEDED
-        and any(isinstance(given, ast.Constant) and isinstance(given.value, int) for given in node.args)
+        and any(isinstance(argument, ast.Constant) and isinstance(argument.value, int) for argument in node.args)
     )
 
 

@@ -119,13 +119,13 @@ def advance(
         RecordError: The folder cannot be written.
     """
     recorder = Recorder(simulation, writer, plan.frames, start, plan.checkpoint_seconds)
-    begun = time.perf_counter()
+    started = time.perf_counter()
     seconds, step, status = start.seconds, start.step, "failed"
-    window, heard = plan.config.world.rollout_steps, 0
+    window, handled_count = plan.config.world.rollout_steps, 0
     try:
         recorder.checkpoint(step, seconds)
         for step in _steps(simulation, plan, start.step, interrupted):
-            seconds = start.seconds + time.perf_counter() - begun
+            seconds = start.seconds + time.perf_counter() - started
             writer.require_folder()
             recorder.deaths()
             if step % window == 0:
@@ -134,9 +134,9 @@ def advance(
                 recorder.frame()
             # Within a window a checkpoint would hold rollouts, which are larger than all else, so save one only if
             # asked to end.
-            if interrupted.count > heard or (step % window == 0 and recorder.checkpoint_due):
+            if interrupted.count > handled_count or (step % window == 0 and recorder.checkpoint_due):
                 recorder.checkpoint(step, seconds)
-                heard = interrupted.count
+                handled_count = interrupted.count
             if callback is not None and step < plan.steps:  # the last moment is shown below, with its own rows
                 callback(recorder.moment(step, plan.steps, seconds - start.seconds))
         # First the checkpoint, then the rows of a window that may be incomplete: a resumed run removes those.
@@ -155,8 +155,8 @@ def advance(
     finally:
         with suppress(RecordError) if status == "failed" else nullcontext():  # the first error is already being raised
             recorder.living()
-            ends = [end_of(world, failed=status == "failed") for world in simulation.worlds]
-            manifest = last_manifest(manifest, ends, status, seconds, writer)
+            world_ends = [end_of(world, failed=status == "failed") for world in simulation.worlds]
+            manifest = last_manifest(manifest, world_ends, status, seconds, writer)
     save_snapshot(plan.out, snapshot(simulation.worlds[0]))
     return manifest
 
@@ -169,16 +169,16 @@ def _steps(simulation: Simulation, plan: RunPlan, step: int, interrupted: Interr
     while step < plan.steps and not simulation.extinct:
         if interrupted.count > 1 or (interrupted.count == 1 and step % window == 0):
             return
-        ends = [plan.steps, (step // window + 1) * window, step + piece]
+        limits = [plan.steps, (step // window + 1) * window, step + piece]
         if plan.frames:
-            ends.append((step // plan.frames + 1) * plan.frames)
-        steps = min(ends) - step
-        begun = time.perf_counter()
+            limits.append((step // plan.frames + 1) * plan.frames)
+        steps = min(limits) - step
+        started = time.perf_counter()
         simulation.run(steps)
-        seconds = max(time.perf_counter() - begun, 1e-6)
-        wanted = window if on_device else min(steps * PIECE_SECONDS / seconds, 4 * piece)
+        seconds = max(time.perf_counter() - started, 1e-6)
+        target = window if on_device else min(steps * PIECE_SECONDS / seconds, 4 * piece)
         # The engine keeps deaths until they are read: keep pieces so short that deaths fill an eighth of its space.
         full = 8 * max(world.waiting_deaths for world in simulation.worlds)
-        piece = max(1, int(min(wanted, steps / full if full else 4 * steps)))
+        piece = max(1, int(min(target, steps / full if full else 4 * steps)))
         step += steps
         yield step

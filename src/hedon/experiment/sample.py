@@ -46,25 +46,25 @@ def agent_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
     return rows
 
 
-def _gene_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
+def _gene_rows(world: World, agents: dict[str, NDArray[Any]]) -> Rows:
     """Genes of agents by column; NaN if a species lacks a gene."""
     rows: Rows = {}
     for name in world.columns.gene_names:
-        values = np.full(len(lives["species"]), np.nan, np.float32)
+        values = np.full(len(agents["species"]), np.nan, np.float32)
         for species, layout in enumerate(world.layouts):
             if name in layout.gene_names:
-                mine = lives["species"] == species
-                values[mine] = lives["genome"][mine, layout.gene_names.index(name)]
+                in_species = agents["species"] == species
+                values[in_species] = agents["genome"][in_species, layout.gene_names.index(name)]
         rows[name] = values
     return rows
 
 
-def _held_rows(world: World, lives: dict[str, NDArray[Any]]) -> Rows:
+def _held_rows(world: World, agents: dict[str, NDArray[Any]]) -> Rows:
     """Levels of agents' stores other than energy, by column; NaN if a species lacks one."""
     rows: Rows = {}
     for name in world.columns.held_names:
-        has = np.array([name in species.store for species in world.config.species.values()])
-        rows[name] = np.where(has[lives["species"]], lives[name], np.nan).astype(np.float32)
+        has_store = np.array([name in species.store for species in world.config.species.values()])
+        rows[name] = np.where(has_store[agents["species"]], agents[name], np.nan).astype(np.float32)
     return rows
 
 
@@ -90,10 +90,10 @@ class PopulationSampler:
     def row(self) -> Rows:
         """Row of the interval that ends now."""
         world, since = self.world, self.since
-        lives = world.agents()
-        lives = {name: values[lives["species"] == self.species] for name, values in lives.items()}
-        now = self._now()
-        present = world.view("food_stock.present")
+        agents = world.agents()
+        agents = {name: values[agents["species"] == self.species] for name, values in agents.items()}
+        current = self._now()
+        food_counts = world.view("food_stock.present")
         row: Rows = {
             "world": world.row,
             "seed": world.seed,
@@ -102,24 +102,24 @@ class PopulationSampler:
         }
         if self.columns.several:
             row["species"] = self.columns.species[self.species]
-        row["alive"] = len(lives["energy"])
-        counted = [name for name in now.counters if name != "energy_initial"]
-        row |= {name: now.counters[name] - since.counters[name] for name in counted}
-        row |= _spread("energy", lives["energy"]) | _spread("age", lives["age"])
-        generation = lives["generation"]
+        row["alive"] = len(agents["energy"])
+        counter_names = [name for name in current.counters if name != "energy_initial"]
+        row |= {name: current.counters[name] - since.counters[name] for name in counter_names}
+        row |= _spread("energy", agents["energy"]) | _spread("age", agents["age"])
+        generation = agents["generation"]
         row["generation_mean"] = generation.mean() if len(generation) else np.nan
         row["generation_max"] = generation.max() if len(generation) else -1
-        for name, weight in _gene_rows(world, lives).items():
+        for name, weight in _gene_rows(world, agents).items():
             row[f"{name}_mean"] = weight.mean() if len(weight) else np.nan
             row[f"{name}_sd"] = weight.std() if len(weight) else np.nan
         for k, kind in enumerate(world.config.food):
-            row[f"food_{kind}"] = int(present[k])
+            row[f"food_{kind}"] = int(food_counts[k])
         for name, k in _meals(self.columns).items():
-            row[f"eaten_{name}"] = now.eaten[k] - since.eaten[k]
-        row["energy_total"] = lives["energy"].sum()
-        own = list(world.config.species.values())[self.species].store
+            row[f"eaten_{name}"] = current.eaten[k] - since.eaten[k]
+        row["energy_total"] = agents["energy"].sum()
+        stores = list(world.config.species.values())[self.species].store
         for name in self.columns.stores:
-            row[f"{name}_mean"] = lives[name].mean() if name in own and len(lives[name]) else np.nan
+            row[f"{name}_mean"] = agents[name].mean() if name in stores and len(agents[name]) else np.nan
         return row
 
     def _now(self) -> Sampled:
@@ -128,8 +128,8 @@ class PopulationSampler:
         if self.columns.obstacles:
             for name in ("obstacles_touched", "energy_damage"):
                 counters[name] = world.view(f"obstacle_counters.{name}")[self.species].item()
-        hunting = ("deaths_eaten", "energy_hunted", "energy_prey") if self.columns.has_hunts else ()
-        for name in (*(("deaths_starved",) if self.columns.has_causes else ()), *hunting):
+        hunt_counters = ("deaths_eaten", "energy_hunted", "energy_prey") if self.columns.has_hunts else ()
+        for name in (*(("deaths_starved",) if self.columns.has_causes else ()), *hunt_counters):
             counters[name] = world.view(f"hunt_counters.{name}")[self.species].item()
         by_species = world.view("eaten_by")
         eaten = by_species[self.species] if len(by_species) else world.view("food_stock.eaten")
@@ -138,30 +138,30 @@ class PopulationSampler:
 
 def frame_rows(world: World) -> list[Rows]:
     """Rows of the table `frames`: the current state of every agent and food of a world."""
-    lives, foods = world.agents(), world.foods()
-    here = {"world": world.row, "step": world.step}
-    placed = {column: lives[column] for column in ("x", "y", "angle", "energy")}
+    living, foods = world.agents(), world.foods()
+    keys = {"world": world.row, "step": world.step}
+    columns = {column: living[column] for column in ("x", "y", "angle", "energy")}
     rows = []
     for species, name in enumerate(world.config.species):
-        mine = lives["species"] == species
-        agents = {column: values[mine] for column, values in (_held_rows(world, lives) | placed).items()}
-        rows.append({**here, "kind": name, "id": lives["agent_id"][mine], **agents})
+        selected = living["species"] == species
+        agents = {column: values[selected] for column, values in (_held_rows(world, living) | columns).items()}
+        rows.append({**keys, "kind": name, "id": living["agent_id"][selected], **agents})
     for k, kind in enumerate(world.config.food):
-        mine = foods["kind"] == k
-        rows.append({**here, "kind": kind, "x": foods["x"][mine], "y": foods["y"][mine]})
+        selected = foods["kind"] == k
+        rows.append({**keys, "kind": kind, "x": foods["x"][selected], "y": foods["y"][selected]})
     return rows
 
 
 def snapshot(world: World) -> Snapshot:
     """The present state of a world, for a picture."""
-    lives, foods, config = world.agents(), world.foods(), world.config
+    agents, foods, config = world.agents(), world.foods(), world.config
     kinds = list(config.species.values())
     return Snapshot(
         world=world.row,
         seed=world.seed,
         step=world.step,
-        **{name: lives[name] for name in ("agent_id", "x", "y", "angle", "energy", "species")},
-        rays=_rays(world, lives["species"]),
+        **{name: agents[name] for name in ("agent_id", "x", "y", "angle", "energy", "species")},
+        rays=_rays(world, agents["species"]),
         food_kind=foods["kind"],
         food_x=foods["x"],
         food_y=foods["y"],
@@ -176,21 +176,21 @@ def snapshot(world: World) -> Snapshot:
         ray_spread=np.array([kind.sensor.ray_spread for kind in kinds]),
         mouth_spread=np.array([kind.sensor.mouth_spread for kind in kinds]),
         mouth_center=np.array([kind.sensor.mouth_center for kind in kinds]),
-        own=own_bodies(config, lives["species"], _gene_rows(world, lives)),
+        own=own_bodies(config, agents["species"], _gene_rows(world, agents)),
     )
 
 
 def _rays(world: World, species: NDArray[np.int32]) -> NDArray[np.float32]:
     """Rays of all agents, by the types of the world."""
-    every = types(world.config)
-    most = max(kind.sensor.ray_count for kind in world.config.species.values())
-    rays = np.full((len(species), most, len(every)), -1.0, np.float32)
+    type_names = types(world.config)
+    most_rays = max(kind.sensor.ray_count for kind in world.config.species.values())
+    rays = np.full((len(species), most_rays, len(type_names)), -1.0, np.float32)
     for i, layout in enumerate(world.layouts):
-        mine = np.flatnonzero(species == i)
-        if len(mine):
-            seen = world.rays(i)
-            channels = np.array([every.index(name) for name in layout.sees])
-            rays[np.ix_(mine, np.arange(seen.shape[1]), channels)] = seen
+        members = np.flatnonzero(species == i)
+        if len(members):
+            observed = world.rays(i)
+            channels = np.array([type_names.index(name) for name in layout.sees])
+            rays[np.ix_(members, np.arange(observed.shape[1]), channels)] = observed
     return rays
 
 

@@ -80,12 +80,12 @@ def first_manifest(plan: Planned, simulation: Simulation, from_step: int = 0, wo
 def channel_notes(config: Config) -> Iterator[ChannelNote]:
     """Channels of each species: those observed besides rays and touch, those of the reward, and the gate."""
     for species, layout in layouts(config).items():
-        for each in layout.observed:
-            yield ChannelNote(species, "observed", each.name, "", each.scale, each.unit, each.meaning)
+        for channel in layout.observed:
+            yield ChannelNote(species, "observed", channel.name, "", channel.scale, channel.unit, channel.meaning)
         reward = config.species[species].reward
         for term in () if reward.rule else layout.terms:
-            each = term.channel
-            yield ChannelNote(species, "paid", each.name, term.gene, term.coef, each.unit, each.meaning)
+            channel = term.channel
+            yield ChannelNote(species, "paid", channel.name, term.gene, term.coef, channel.unit, channel.meaning)
         if reward.family in GATED and not reward.rule:
             yield ChannelNote(species, "gate", layout.gate.name, "", 1.0, layout.gate.unit, layout.gate.meaning)
 
@@ -107,7 +107,7 @@ def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, fro
         simulation: Simulation made from the plan, at `from_step`.
         from_step: Step at which it continues [step].
     """
-    here = replace(
+    current = replace(
         manifest,
         backend=simulation.engine.backend,
         threads=simulation.engine.threads,
@@ -121,7 +121,7 @@ def next_manifest(manifest: Manifest, plan: RunPlan, simulation: Simulation, fro
         world_digests=(),
         records_digest=None,
         fault=None,
-        sessions=(*manifest.sessions, _session(here, from_step)),
+        sessions=(*manifest.sessions, _session(current, from_step)),
     )
 
 

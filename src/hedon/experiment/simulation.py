@@ -80,14 +80,14 @@ class Simulation(Cloned):
         rules: Sequence[RuleSource] = (),
     ) -> None:
         with _engine.FloatMode():  # the walls must not depend on the caller's rounding mode
-            given = engine_input(config)
-        self._begin(given, seed_list(seeds, MAX_WORLD_SEED), threads, backend, find_rules(given.config, rules))
+            inputs = engine_input(config)
+        self._begin(inputs, seed_list(seeds, MAX_WORLD_SEED), threads, backend, find_rules(inputs.config, rules))
 
     def _begin(
-        self, given: EngineInput, seeds: tuple[int, ...], threads: int, backend: str, rules: tuple[Rule, ...]
+        self, inputs: EngineInput, seeds: tuple[int, ...], threads: int, backend: str, rules: tuple[Rule, ...]
     ) -> None:
-        self.config = given.config
-        self._given, self._backend = given, backend
+        self.config = inputs.config
+        self._given, self._backend = inputs, backend
         self._driven = False  # whether an environment drives the worlds
         self._threads = integer("threads", threads, 0, MAX_THREADS)
         if not isinstance(backend, str):
@@ -98,9 +98,9 @@ class Simulation(Cloned):
         device = device_library(backend)
         host = "" if device else backend
         self.engine = _engine.Simulation(
-            given.settings,
-            given.walls,
-            given.outer_walls,
+            inputs.settings,
+            inputs.walls,
+            inputs.outer_walls,
             list(seeds),
             self._threads,
             host,
@@ -171,10 +171,10 @@ class Simulation(Cloned):
             agents = world.agents()
             genomes = agents["genome"].copy()
             for i, (name, layout) in enumerate(layouts(self.config).items()):
-                mine = np.flatnonzero(agents["species"] == i)
-                given = founders.of_species(name).genomes(world.seed, len(mine), layout.gene_names)
-                at = np.ix_(mine, np.arange(len(layout.genes)))
-                genomes[at] = np.where(np.isnan(given), genomes[at], given)
+                members = np.flatnonzero(agents["species"] == i)
+                founder_genomes = founders.of_species(name).genomes(world.seed, len(members), layout.gene_names)
+                index = np.ix_(members, np.arange(len(layout.genes)))
+                genomes[index] = np.where(np.isnan(founder_genomes), genomes[index], founder_genomes)
             self.engine.set_genomes(world.index, genomes.astype(np.float32))
 
     def set_networks(self, networks: Networks) -> None:
@@ -190,9 +190,9 @@ class Simulation(Cloned):
             species = world.agents()["species"]
             for name in fixed_species(self.config):
                 i = names.index(name)
-                given = networks.draw(name, world.seed, int((species == i).sum()))
+                founder_networks = networks.draw(name, world.seed, int((species == i).sum()))
                 try:
-                    self.engine.set_networks(world.index, i, given)
+                    self.engine.set_networks(world.index, i, founder_networks)
                 except ValueError as error:
                     raise NetworkError(f"networks of {name}: {error}") from None
 
@@ -217,10 +217,10 @@ class Simulation(Cloned):
 
     def _seeds_of(self, seeds: Any) -> tuple[int, ...]:
         """Returns one seed per world. Raises ArgumentError for anything else."""
-        wanted = seed_list(seeds, MAX_WORLD_SEED)
-        if len(wanted) != len(self.worlds):
-            raise ArgumentError(f"seeds: there must be {len(self.worlds)}, one per world, not {len(wanted)}")
-        return wanted
+        checked_seeds = seed_list(seeds, MAX_WORLD_SEED)
+        if len(checked_seeds) != len(self.worlds):
+            raise ArgumentError(f"seeds: there must be {len(self.worlds)}, one per world, not {len(checked_seeds)}")
+        return checked_seeds
 
     def reseed(self, seeds: Sequence[int]) -> None:
         """Gives all worlds other random numbers from now on: the same agents, genes, networks and food, another future.
@@ -236,13 +236,13 @@ class Simulation(Cloned):
             EngineError: A world has stopped at a fault.
         """
         self._require_free("reseed")
-        wanted = self._seeds_of(seeds)
+        checked_seeds = self._seeds_of(seeds)
         if self.config.obstacle.count:
             raise ArgumentError("reseed: the places of obstacles follow from a world's seed: these worlds have some")
-        for world, seed in zip(self.worlds, wanted, strict=True):
-            kept = self.engine.save(world.index)
+        for world, seed in zip(self.worlds, checked_seeds, strict=True):
+            state = self.engine.save(world.index)
             self.engine.reset(world.index, seed)
-            self.engine.restore(world.index, kept)
+            self.engine.restore(world.index, state)
 
     def save(self) -> bytes:
         """Saves the current state of all worlds, with their seeds; `restore` continues from it with the same bits.
@@ -269,10 +269,10 @@ class Simulation(Cloned):
 
     def clone(self) -> Self:
         """Returns a copy with its own worlds, which continues as this one would, like `copy.copy` and `deepcopy`."""
-        made = self._fresh_one()
-        made._restore(self.save())
-        vars(made).update(copy.deepcopy(self._added()))
-        return made
+        clone = self._fresh_one()
+        clone._restore(self.save())
+        vars(clone).update(copy.deepcopy(self._added()))
+        return clone
 
     def __getstate__(self) -> dict[str, Any]:
         return self._arguments() | {"saved": self.save(), "added": self._added()}
@@ -280,8 +280,8 @@ class Simulation(Cloned):
     def __setstate__(self, state: dict[str, Any]) -> None:
         saved, added = state.pop("saved", None), state.pop("added", {})
         with _engine.FloatMode():
-            given = engine_input(state.pop("config"))
-        self._begin(given, **state)
+            inputs = engine_input(state.pop("config"))
+        self._begin(inputs, **state)
         if saved is not None:
             self.restore(saved)
         vars(self).update(added)
@@ -289,14 +289,14 @@ class Simulation(Cloned):
     def _arguments(self) -> dict[str, Any]:
         """Arguments that created it; rules are without what is compiled for this process."""
         rules = tuple(replace(rule) for rule in self.rules)
-        given = {"config": self.config, "seeds": self.seeds, "threads": self._threads, "backend": self._backend}
-        return {**given, "rules": rules}
+        arguments = {"config": self.config, "seeds": self.seeds, "threads": self._threads, "backend": self._backend}
+        return {**arguments, "rules": rules}
 
     def _fresh_one(self) -> Self:
         """A new simulation with the same arguments, at its start."""
-        made = type(self).__new__(type(self))
-        made._begin(self._given, self.seeds, self._threads, self._backend, self.rules)
-        return made
+        simulation = type(self).__new__(type(self))
+        simulation._begin(self._given, self.seeds, self._threads, self._backend, self.rules)
+        return simulation
 
     @cached_property
     def _mark(self) -> dict[str, Any]:
@@ -304,24 +304,24 @@ class Simulation(Cloned):
         rules = [[rule.species, rule.use, rule.source.name, rule.source.digest] for rule in self.rules]
         return {"hedon": version("hedon"), "config": digest(self.config), "rules": rules}
 
-    def _pack(self, more: bytes) -> bytes:
-        return self.engine.pack(json.dumps(self._mark).encode() + b"\n" + more)
+    def _pack(self, payload: bytes) -> bytes:
+        return self.engine.pack(json.dumps(self._mark).encode() + b"\n" + payload)
 
     def _unpack(self, saved: Any) -> bytes:
         """The bytes given to `_pack`. Raises ArgumentError if this simulation cannot continue from these worlds."""
         if not isinstance(saved, bytes):
             raise ArgumentError(f"saved = {brief(repr(saved))}: must be bytes, as `save` gives them")
         try:
-            head, _, more = self.engine.packed_head(saved).partition(b"\n")
+            head, _, payload = self.engine.packed_head(saved).partition(b"\n")
             mark = json.loads(head)
         except ValueError as error:
             raise ArgumentError(f"saved: these bytes {error}") from None
-        for name, what in MARKS.items():
-            then, now = mark.get(name), self._mark[name]
-            if then != now:
-                said = f" ({then}, here {now})" if name == "hedon" else ""
-                raise ArgumentError(f"saved: these worlds were saved {what}{said}")
-        return more
+        for name, description in MARKS.items():
+            stored, current = mark.get(name), self._mark[name]
+            if stored != current:
+                detail = f" ({stored}, here {current})" if name == "hedon" else ""
+                raise ArgumentError(f"saved: these worlds were saved {description}{detail}")
+        return payload
 
     def _become(self, saved: Any) -> dict[str, Any]:
         """Turns all worlds into the only saved one, each with its own seed.
@@ -334,11 +334,11 @@ class Simulation(Cloned):
         """
         if self.config.obstacle.count:
             raise ArgumentError("world: the places of obstacles follow from a world's seed: these worlds have some")
-        one = type(self).__new__(type(self))
-        one._begin(self._given, (0,), 1, self._backend, self.rules)
-        one._unpack(saved)
-        one._restore(saved)
-        arrays = one.engine.save(0)
+        single = type(self).__new__(type(self))
+        single._begin(self._given, (0,), 1, self._backend, self.rules)
+        single._unpack(saved)
+        single._restore(saved)
+        arrays = single.engine.save(0)
         for world in self.worlds:
             self.engine.restore(world.index, arrays)
         return arrays

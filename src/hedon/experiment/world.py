@@ -92,8 +92,8 @@ class World:
     @property
     def counters(self) -> dict[str, Any]:
         """Births, deaths, failures and the energy ledger since the start of the world, over all species."""
-        each = [self.counters_of(species) for species in range(len(self.config.species))]
-        return {name: sum(counters[name] for counters in each) for name in each[0]}
+        per_species = [self.counters_of(species) for species in range(len(self.config.species))]
+        return {name: sum(counters[name] for counters in per_species) for name in per_species[0]}
 
     def counters_of(self, species: int | str) -> dict[str, Any]:
         """The same counters for one species.
@@ -134,8 +134,8 @@ class World:
         try:
             return self._engine.view(self.index, path)
         except KeyError:
-            near = nearest(str(path), self._engine.view_names())
-            hint = f"; did you mean {near}?" if near else ""
+            suggestion = nearest(str(path), self._engine.view_names())
+            hint = f"; did you mean {suggestion}?" if suggestion else ""
             raise ArgumentError(f"view: the state has no array {brief(repr(path))}{hint}") from None
 
     def agents(self) -> dict[str, NDArray[Any]]:
@@ -152,12 +152,12 @@ class World:
 
     def _held(self, held: NDArray[np.float64], species: NDArray[np.int32]) -> dict[str, NDArray[np.float64]]:
         """Levels of agents' stores besides energy, by name; 0 if a species lacks the store."""
-        found = {name: np.zeros(len(species)) for name in store_columns(self.config)}
-        for i, each in enumerate(self.config.species.values()):
-            mine = species == i
-            for column, name in enumerate(each.store):
-                found[name][mine] = held[mine, column]
-        return found
+        levels = {name: np.zeros(len(species)) for name in store_columns(self.config)}
+        for i, species_config in enumerate(self.config.species.values()):
+            in_species = species == i
+            for column, name in enumerate(species_config.store):
+                levels[name][in_species] = held[in_species, column]
+        return levels
 
     def deaths(self, *, partial: bool = False) -> dict[str, NDArray[Any]]:
         """Takes the data of each agent that died since the last call, (deaths,) each, with `genome` and stores.
@@ -179,9 +179,9 @@ class World:
     def _take_deaths(self, *, partial: bool) -> dict[str, NDArray[Any]]:
         lost = self.lost_deaths
         if lost and not partial:
-            room = len(self.view("death_log.birth_step"))
+            slots = len(self.view("death_log.birth_step"))
             raise EngineError(
-                f"world {self.index}: {lost:,} deaths are lost, since more than {room:,} came before they were read: "
+                f"world {self.index}: {lost:,} deaths are lost, since more than {slots:,} came before they were read: "
                 "call World.deaths more often, or take those that are left with World.deaths(partial=True)"
             )
         rows = self._engine.take_rows(self.index)
@@ -222,8 +222,8 @@ class World:
             ArgumentError: There is no species of this name.
         """
         i = self._species(species)
-        rays, seen = list(self.config.species.values())[i].sensor.ray_count, len(self.layouts[i].sees)
-        return self.observations(species)[:, : seen * rays].reshape(-1, seen, rays).swapaxes(1, 2)
+        rays, type_count = list(self.config.species.values())[i].sensor.ray_count, len(self.layouts[i].sees)
+        return self.observations(species)[:, : type_count * rays].reshape(-1, type_count, rays).swapaxes(1, 2)
 
     def digest(self) -> str:
         """Hash of the world's whole state, equal for equal bits."""

@@ -47,8 +47,8 @@ class WorldArrays:
         if name.startswith("_"):
             raise AttributeError(name)
         if name not in self._paths:
-            near = nearest(name, self._paths)
-            hint = f"; did you mean {near}?" if near else ""
+            suggestion = nearest(name, self._paths)
+            hint = f"; did you mean {suggestion}?" if suggestion else ""
             raise AttributeError(f"the state has no array {name!r}{hint}")
         return self._view(self._paths[name])
 
