@@ -68,8 +68,8 @@ class ArrayWriter:
         kind = np.dtype(dtype)
         self._member = self._archive.open(f"{name}.npy", "w", force_zip64=True)
         text = repr({"descr": kind.str, "fortran_order": False, "shape": tuple(shape)})
-        before = self._file.tell() + len(np.lib.format.magic(*_VERSION)) + 2 + len(text) + 1
-        text += " " * (-before % _ALIGNMENT) + "\n"
+        header_size = self._file.tell() + len(np.lib.format.magic(*_VERSION)) + 2 + len(text) + 1
+        text += " " * (-header_size % _ALIGNMENT) + "\n"
         self._member.write(np.lib.format.magic(*_VERSION) + struct.pack("<H", len(text)) + text.encode())
         self._name, self._sums[name] = name, _sum_of(kind, tuple(shape))
 
@@ -80,7 +80,7 @@ class ArrayWriter:
 
     def digest(self) -> str:
         """SHA-256 of everything written so far, equal to `digest` of the same arrays."""
-        return _digest({name: each.hexdigest() for name, each in self._sums.items()})
+        return _digest({name: checksum.hexdigest() for name, checksum in self._sums.items()})
 
     def _end(self) -> None:
         if self._member is not None:
@@ -92,11 +92,11 @@ def digest(arrays: Mapping[str, NDArray[Any]]) -> str:
     """SHA-256 of the names, types, shapes and bytes of arrays of any shape; their order does not matter."""
     sums = {}
     for name, array in arrays.items():
-        each = _sum_of(array.dtype, array.shape)
+        checksum = _sum_of(array.dtype, array.shape)
         data = np.ascontiguousarray(array).data.cast("B") if array.size else memoryview(b"")
-        for first in range(0, len(data), _PIECE):
-            each.update(data[first : first + _PIECE])
-        sums[name] = each.hexdigest()
+        for offset in range(0, len(data), _PIECE):
+            checksum.update(data[offset : offset + _PIECE])
+        sums[name] = checksum.hexdigest()
     return _digest(sums)
 
 
@@ -126,8 +126,8 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
         file.setflags(write=False)
         for entry in entries:
             head = entry.header_offset
-            first = head + _LOCAL_HEAD + sum(_LENGTHS.unpack(file[head : head + _LOCAL_HEAD].tobytes()))
-            array = _parse_array(file[first : first + entry.file_size])
+            offset = head + _LOCAL_HEAD + sum(_LENGTHS.unpack(file[head : head + _LOCAL_HEAD].tobytes()))
+            array = _parse_array(file[offset : offset + entry.file_size])
             members[entry.filename.removesuffix(".npy")] = array
     return members
 
@@ -150,4 +150,6 @@ def _sum_of(kind: np.dtype[Any], shape: tuple[int, ...]) -> Any:
 
 
 def _digest(sums: Mapping[str, str]) -> str:
-    return hashlib.sha256("".join(f"{name} {of}\n" for name, of in sorted(sums.items())).encode()).hexdigest()
+    return hashlib.sha256(
+        "".join(f"{name} {checksum}\n" for name, checksum in sorted(sums.items())).encode()
+    ).hexdigest()

@@ -115,10 +115,10 @@ def write_checkpoint(path: Path, head: CheckpointHead, fill: Fill) -> None:
     path.parent.mkdir(exist_ok=True)
 
     def write(file: BinaryIO) -> None:
-        with ArrayWriter(file) as out:
-            out.add(_HEAD, np.frombuffer(json.dumps(asdict(head)).encode(), np.uint8))
-            fill(out)
-            out.add(_DIGEST, np.frombuffer(out.digest().encode(), np.uint8))
+        with ArrayWriter(file) as archive:
+            archive.add(_HEAD, np.frombuffer(json.dumps(asdict(head)).encode(), np.uint8))
+            fill(archive)
+            archive.add(_DIGEST, np.frombuffer(archive.digest().encode(), np.uint8))
 
     write_atomically(path, write)
 

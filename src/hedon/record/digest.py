@@ -41,8 +41,8 @@ def records_digest(folder: Path, columns: Columns) -> str:
 
 def _digest_worlds(paths: list[Path], table: Table) -> dict[int, str]:
     digests = {}
-    for first in range(0, len(paths), PARTS_AT_ONCE):
-        rows = pl.concat([load_part(path, table) for path in paths[first : first + PARTS_AT_ONCE]])
+    for start in range(0, len(paths), PARTS_AT_ONCE):
+        rows = pl.concat([load_part(path, table) for path in paths[start : start + PARTS_AT_ONCE]])
         data, worlds = _row_bytes(rows, table), rows["world"].to_numpy()
         for world in np.unique(worlds).tolist():
             digests.setdefault(world, hashlib.sha256()).update(np.ascontiguousarray(data[worlds == world]))

@@ -69,9 +69,9 @@ def holds_run(folder: Path) -> bool:
     if (folder / MANIFEST).exists():
         return True
     tables = [folder / name for name in (*TABLE_FOLDERS, CHECKPOINTS) if (folder / name).exists()]
-    begun = all((folder / name).is_dir() for name in TABLE_FOLDERS)
-    kept = any(not path.is_dir() or any(path.iterdir()) for path in tables)
-    return kept or ((folder / CONFIG).exists() and not begun)
+    has_folders = all((folder / name).is_dir() for name in TABLE_FOLDERS)
+    has_parts = any(not path.is_dir() or any(path.iterdir()) for path in tables)
+    return has_parts or ((folder / CONFIG).exists() and not has_folders)
 
 
 def require_no_run(folder: Path) -> None:

@@ -75,10 +75,10 @@ class Founders:
             seed: Seed of the world.
             count: Number of founders.
         """
-        exact = {group: share * count for group, share in self.share.items()}
-        number = {group: math.floor(part) for group, part in exact.items()}
-        left = sorted(exact, key=lambda group: number[group] - exact[group])
-        for group in left[: count - sum(number.values())]:
+        quotas = {group: share * count for group, share in self.share.items()}
+        number = {group: math.floor(part) for group, part in quotas.items()}
+        by_remainder = sorted(quotas, key=lambda group: number[group] - quotas[group])
+        for group in by_remainder[: count - sum(number.values())]:
             number[group] += 1
         rows: dict[str, list[int]] = {group: [] for group in self.share}
         for row, group in enumerate(self.group):
@@ -105,18 +105,18 @@ class Founders:
             count: Number of founders.
             names: Genome columns; further columns of the table belong to other species.
         """
-        found = np.full((count, len(names)), np.nan, np.float32)
+        genomes = np.full((count, len(names)), np.nan, np.float32)
         rows = self.draw(seed, count)
         for i, gene in enumerate(self.genes):
             if gene in names:
-                found[:, list(names).index(gene)] = self.values[rows, i]
-        return found
+                genomes[:, list(names).index(gene)] = self.values[rows, i]
+        return genomes
 
     def of_species(self, name: str) -> "Founders":
         """The table for one species: genes that name it, as in `prey.w_action`, and genes that name no species."""
-        mine = [i for i, gene in enumerate(self.genes) if "." not in gene or gene.startswith(f"{name}.")]
-        genes = tuple(self.genes[i].removeprefix(f"{name}.") for i in mine)
-        return replace(self, genes=genes, values=self.values[:, mine])
+        columns = [i for i, gene in enumerate(self.genes) if "." not in gene or gene.startswith(f"{name}.")]
+        genes = tuple(self.genes[i].removeprefix(f"{name}.") for i in columns)
+        return replace(self, genes=genes, values=self.values[:, columns])
 
     def only_for(self, name: str) -> "Founders":
         """The table for one species, with the species in all names of genes, as in `prey.w_action`.
@@ -124,8 +124,8 @@ class Founders:
         Args:
             name: Name of the species.
         """
-        mine = self.of_species(name)
-        return replace(mine, genes=tuple(f"{name}.{gene}" for gene in mine.genes))
+        founders = self.of_species(name)
+        return replace(founders, genes=tuple(f"{name}.{gene}" for gene in founders.genes))
 
     def changed(self, gene: str, value: float) -> "Founders":
         """A copy of the table in which one gene has the same value in all rows.
@@ -152,9 +152,9 @@ class Founders:
             if column_of(config, gene) != gene:
                 raise FounderError(f"{brief(origin)}: {unknown_gene(config, gene)}")
         limits = np.array(list(limits_of(config, self.genes).values()), np.float32)
-        wrong = np.argwhere(np.abs(self.values) > limits)
-        if len(wrong):
-            row, column = wrong[0]
+        invalid = np.argwhere(np.abs(self.values) > limits)
+        if len(invalid):
+            row, column = invalid[0]
             raise FounderError(
                 f"{brief(origin)}: row {row + 1}, {self.genes[column]} = {self.values[row, column]:g}: must be within "
                 f"± {limits[column]:g}, the gene's limit"
@@ -228,18 +228,18 @@ def unknown_gene(config: Config, name: str, own: str | None = None) -> str:
         own: Species to which the gene should belong; None for any.
     """
     species, dot, gene = name.rpartition(".")
-    begin = f"{species}." if dot and species in config.species else ""
-    own = species if begin else own
+    prefix = f"{species}." if dot and species in config.species else ""
+    own = species if prefix else own
     columns = gene_columns(config) if own is None else layouts(config)[own].gene_names
-    shown = [column.removeprefix("w_") for column in columns if not column.startswith("neutral_")]
+    gene_names = [column.removeprefix("w_") for column in columns if not column.startswith("neutral_")]
     count = sum(column.startswith("neutral_") for column in columns)
     neutral = f", neutral_1 to neutral_{count}" if count else ""
-    near = nearest(gene if begin else name, [*columns, *shown, "food"])
-    hint = f"; did you mean {begin}{near}?" if near else ""
-    whose = "there are" if own is None or len(config.species) == 1 else f"{own} has"
-    return f"there is no gene {brief(repr(name))} ({whose} {', '.join(shown)}{neutral}){hint}"
+    suggestion = nearest(gene if prefix else name, [*columns, *gene_names, "food"])
+    hint = f"; did you mean {prefix}{suggestion}?" if suggestion else ""
+    holder = "there are" if own is None or len(config.species) == 1 else f"{own} has"
+    return f"there is no gene {brief(repr(name))} ({holder} {', '.join(gene_names)}{neutral}){hint}"
 
 
-def _shuffled(items: Sequence[int], what: str) -> list[int]:
+def _shuffled(items: Sequence[int], purpose: str) -> list[int]:
     """Items in an order that depends only on a text, and on no version of any library."""
-    return sorted(items, key=lambda item: hashlib.sha256(f"{what} {item}".encode()).digest())
+    return sorted(items, key=lambda item: hashlib.sha256(f"{purpose} {item}".encode()).digest())

@@ -87,47 +87,49 @@ def living(folder: Path, step: int | None, config: Config) -> Founders:
         raise FounderError(f"founders {brief(str(folder))!r}: there is no such file or folder: {_HELP}")
     run = open_run(folder)
     agents = run.agents()
-    last = max([*run.manifest.steps_done, 0])
+    last_step = max([*run.manifest.steps_done, 0])
     if step is None:
-        now = agents.filter(pl.col("death_step").is_null())
-    elif step > last:
-        raise FounderError(f"founders {brief(str(folder))}@{step}: the run has only {last:,} steps")
+        alive = agents.filter(pl.col("death_step").is_null())
+    elif step > last_step:
+        raise FounderError(f"founders {brief(str(folder))}@{step}: the run has only {last_step:,} steps")
     else:
         died_later = pl.col("death_step").is_null() | (pl.col("death_step") > step)
-        now = agents.filter((pl.col("birth_step") <= step) & died_later)
-    if now.is_empty():
-        raise FounderError(f"founders {brief(str(folder))}: nobody is alive at step {last if step is None else step:,}")
+        alive = agents.filter((pl.col("birth_step") <= step) & died_later)
+    if alive.is_empty():
+        raise FounderError(
+            f"founders {brief(str(folder))}: nobody is alive at step {last_step if step is None else step:,}"
+        )
     label = folder.resolve().name if step is None else f"{folder.resolve().name}@{step}"
-    now = now.sort("world", "agent_id")
-    genes, values = _by_species(now, run, config) if run.columns.several else _genomes(now, run, config)
+    alive = alive.sort("world", "agent_id")
+    genes, values = _by_species(alive, run, config) if run.columns.several else _genomes(alive, run, config)
     founders = make_founders(genes, values, [label] * len(values))
     founders.require(config, f"founders {folder}")
     return founders
 
 
-def _genomes(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], NDArray[np.float64]]:
+def _genomes(alive: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], NDArray[np.float64]]:
     """The columns and genes of a run's agents, without neutral genes that the config does not have."""
     for gene in run.reward_names:
         if column_of(config, gene) != gene:
             raise FounderError(f"founders {brief(str(run.path))!r}: {unknown_gene(config, gene)}")
     columns = gene_columns(config)
     genes = [*run.reward_names, *(name for name in run.neutral_names if name in columns)]
-    return genes, now.select(genes).to_numpy()
+    return genes, alive.select(genes).to_numpy()
 
 
-def _by_species(now: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], NDArray[np.float64]]:
+def _by_species(alive: pl.DataFrame, run: Run, config: Config) -> tuple[list[str], NDArray[np.float64]]:
     """The columns and genes of the species in both the run and the config; each row has one agent of each species."""
     shared = [name for name in run.columns.species if name in config.species]
     if not shared:
         known = f"{', '.join(config.species)} here"
-        there = ", ".join(run.columns.species)
-        raise FounderError(f"founders {brief(str(run.path))!r}: its species ({there}) have other names ({known})")
-    made, columns = layouts(config), {}
+        run_species = ", ".join(run.columns.species)
+        raise FounderError(f"founders {brief(str(run.path))!r}: its species ({run_species}) have other names ({known})")
+    species_layouts, columns = layouts(config), {}
     for name in shared:
-        mine = now.filter(pl.col("species") == name)
+        members = alive.filter(pl.col("species") == name)
         for gene in (*run.reward_names, *run.neutral_names):
-            known = mine[gene].drop_nulls()
-            if gene in made[name].gene_names and len(known):
+            known = members[gene].drop_nulls()
+            if gene in species_layouts[name].gene_names and len(known):
                 columns[f"{name}.{gene}"] = known.to_numpy()
             elif gene in run.reward_names and len(known):
                 raise FounderError(f"founders {brief(str(run.path))!r}: {unknown_gene(config, f'{name}.{gene}')}")
@@ -165,8 +167,8 @@ def parse_point(text: str, config: Config) -> dict[str, float]:
         except ValueError:
             value = float("nan")
         if not abs(value) <= limit or column in point:
-            what = f"{brief(name)} = {brief(number)}"
-            raise FounderError(f"{brief(text)}: {what}: must be one number from {-limit:g} to {limit:g}")
+            assignment = f"{brief(name)} = {brief(number)}"
+            raise FounderError(f"{brief(text)}: {assignment}: must be one number from {-limit:g} to {limit:g}")
         point[column] = value
     return point
 
@@ -179,7 +181,7 @@ def _point(text: str, config: Config) -> Founders:
 
 def _parts(text: str) -> list[tuple[str, float | None]]:
     """Sources with their shares. Commas separate sources, and also the genes of a point."""
-    found: list[tuple[str, float | None]] = []
+    sources: list[tuple[str, float | None]] = []
     for item in map(str.strip, text.split(",")):
         share = _SHARE.search(item)
         source = item[: share.start()] if share else item
@@ -188,10 +190,10 @@ def _parts(text: str) -> list[tuple[str, float | None]]:
                 f"--founders {brief(text)!r}: {brief(item)!r} is no source with a share above 0: {_HELP}"
             )
         is_gene = "=" in source and not source.endswith(".csv")
-        if is_gene and found and found[-1][1] is None and "=" in found[-1][0]:
-            source = f"{found.pop()[0]},{source}"
-        found.append((source, float(share[1]) if share else None))
-    return found
+        if is_gene and sources and sources[-1][1] is None and "=" in sources[-1][0]:
+            source = f"{sources.pop()[0]},{source}"
+        sources.append((source, float(share[1]) if share else None))
+    return sources
 
 
 def _is_positive(text: str) -> bool:

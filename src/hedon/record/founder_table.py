@@ -38,10 +38,10 @@ def read_table(path: Path, config: Config) -> Founders:
     except OSError as error:
         raise FounderError(f"{origin}: cannot be read: {error.strerror}") from None
     except (UnicodeDecodeError, csv.Error) as error:
-        what = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"it is not CSV: {error}"
-        raise FounderError(f"{origin}: cannot be read: {what}") from None
-    head = [cell.strip() for cell in rows[0]] if rows else []
-    genes = _columns(head, config, origin)
+        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"it is not CSV: {error}"
+        raise FounderError(f"{origin}: cannot be read: {reason}") from None
+    header = [cell.strip() for cell in rows[0]] if rows else []
+    genes = _columns(header, config, origin)
     lines = [(number, row) for number, row in enumerate(rows[1:], 2) if row]
     if not 1 <= len(lines) <= MAX_ROWS:
         raise FounderError(f"{origin}: must have from 1 to {MAX_ROWS:,} rows below its first line, not {len(lines):,}")
@@ -49,11 +49,11 @@ def read_table(path: Path, config: Config) -> Founders:
     limits = limits_of(config, genes.values())
     for number, row in lines:
         place = f"{origin}: line {number}"
-        if len(row) != len(head):
-            raise FounderError(f"{place}: has {len(row)} cells, but there are {len(head)} columns")
-        cells = dict(zip(head, map(str.strip, row), strict=True))
+        if len(row) != len(header):
+            raise FounderError(f"{place}: has {len(row)} cells, but there are {len(header)} columns")
+        cells = dict(zip(header, map(str.strip, row), strict=True))
         group = cells.get(GROUP) or path.stem
-        if SHARE in head:
+        if SHARE in header:
             share = _number(cells[SHARE], f"{place}, {SHARE}", 0.0, 1e9)
             if not share > 0 or shares.setdefault(group, share) != share:
                 rule = "must be above 0, and the same in all rows of a group"
@@ -86,10 +86,10 @@ def load_founders(folder: Path, config: Config) -> Founders | None:
     return founders
 
 
-def _columns(head: Sequence[str], config: Config, origin: str) -> dict[str, str]:
+def _columns(header: Sequence[str], config: Config, origin: str) -> dict[str, str]:
     """The genome column for each gene column of a table."""
     genes: dict[str, str] = {}
-    for name in head:
+    for name in header:
         if name in (GROUP, SHARE):
             continue
         column = column_of(config, name)
@@ -100,7 +100,7 @@ def _columns(head: Sequence[str], config: Config, origin: str) -> dict[str, str]
         genes[name] = column
     if not genes:
         raise FounderError(f"{origin}: line 1: must name at least one gene, such as food or action, besides {GROUP}")
-    if len(set(head)) < len(head):
+    if len(set(header)) < len(header):
         raise FounderError(f"{origin}: line 1: a column appears twice")
     return genes
 

@@ -41,7 +41,7 @@ def to_xarray(
             f"dims: several rows have the same {', '.join(dims)}: name the columns that tell them apart"
         )
     labels = {name: rows[name].unique().sort().to_numpy() for name in dims}
-    shape = tuple(len(each) for each in labels.values())
+    shape = tuple(len(coordinates) for coordinates in labels.values())
     places = tuple(np.searchsorted(labels[name], rows[name].to_numpy()) for name in dims)
     variables: dict[str, Any] = {}
     for column in rows.drop(dims):

@@ -88,22 +88,28 @@ class Networks:
         Raises:
             NetworkError: A species has no networks, or their inputs do not match.
         """
-        fixed = fixed_species(config)
-        if not fixed:
+        species_names = fixed_species(config)
+        if not species_names:
             raise NetworkError(f'{brief(origin)}: no species has learning.policy = "fixed", so none would use them')
-        for name in fixed:
+        for name in species_names:
             if name not in self.params:
-                there = ", ".join(self.params)
-                raise NetworkError(f"{brief(origin)}: has no networks of the species {brief(name)}, only of: {there}")
-            read, seen = self.inputs[name], observation_columns(config, name)
-            if read != seen:
-                at = next((i for i, pair in enumerate(zip(read, seen, strict=False)) if pair[0] != pair[1]), None)
-                what = (
-                    f"they read {len(read)} inputs, and it has {len(seen)}"
-                    if at is None
-                    else f"their input {at + 1} is {brief(read[at])}, and its is {brief(seen[at])}"
+                available = ", ".join(self.params)
+                raise NetworkError(
+                    f"{brief(origin)}: has no networks of the species {brief(name)}, only of: {available}"
                 )
-                raise NetworkError(f"{brief(origin)}: networks of {brief(name)} do not fit what it observes: {what}")
+            read, expected = self.inputs[name], observation_columns(config, name)
+            if read != expected:
+                index = next(
+                    (i for i, pair in enumerate(zip(read, expected, strict=False)) if pair[0] != pair[1]), None
+                )
+                mismatch = (
+                    f"they read {len(read)} inputs, and it has {len(expected)}"
+                    if index is None
+                    else f"their input {index + 1} is {brief(read[index])}, and its is {brief(expected[index])}"
+                )
+                raise NetworkError(
+                    f"{brief(origin)}: networks of {brief(name)} do not fit what it observes: {mismatch}"
+                )
 
 
 def fixed_species(config: Config) -> list[str]:

@@ -62,8 +62,8 @@ def read_living(path: Path, table: Table, manifest: Manifest) -> tuple[pl.DataFr
         content = BytesIO(read_whole(path))
         rows = pl.read_parquet(content, columns=[column.name for column in table.columns])
         parts = pl.read_parquet_metadata(content).get(PARTS_BEFORE)
-        before = None if parts is None else int(parts)
-    return _sound(path, rows, table, manifest), before
+        part_count = None if parts is None else int(parts)
+    return _sound(path, rows, table, manifest), part_count
 
 
 def value_faults(rows: pl.DataFrame, table: Table, manifest: Manifest | None) -> Iterator[str]:
@@ -74,32 +74,32 @@ def value_faults(rows: pl.DataFrame, table: Table, manifest: Manifest | None) ->
         table: Table that they belong to.
         manifest: Manifest of the run, which limits worlds and steps; None for no such limits.
     """
-    most = {} if manifest is None else {"world": len(manifest.seeds) - 1, "step": manifest.steps_asked}
+    limits = {} if manifest is None else {"world": len(manifest.seeds) - 1, "step": manifest.steps_asked}
     other = [column for column, dtype in table.polars_schema.items() if rows.schema[column] != dtype]
     if other:
         yield f"these columns have a wrong type: {', '.join(other)}"
         return
     for column in table.columns:
         values = rows[column.name]
-        wrong = 0 if column.nullable else values.null_count()
+        invalid = 0 if column.nullable else values.null_count()
         if values.dtype.is_float():
-            wrong += int((~values.is_finite()).sum())
-        if wrong:
-            yield f"{wrong:,} values of {column.name} are missing or not finite"
+            invalid += int((~values.is_finite()).sum())
+        if invalid:
+            yield f"{invalid:,} values of {column.name} are missing or not finite"
         if column.missing_for is not None and "kind" in rows.columns:
-            of_food = rows["kind"].is_in(column.missing_for)
-            if (values.is_null() != of_food).any():
+            is_food = rows["kind"].is_in(column.missing_for)
+            if (values.is_null() != is_food).any():
                 yield f"{column.name} is missing for an agent, or known for a food"
         if values.dtype.is_integer():
-            limit = most.get("world" if column.name == "world" else column.unit)
-            outside = (values < 0) if limit is None else ~values.is_between(0, limit)
-            if outside.any():
-                first = values.filter(outside)[0]
+            limit = limits.get("world" if column.name == "world" else column.unit)
+            is_outside = (values < 0) if limit is None else ~values.is_between(0, limit)
+            if is_outside.any():
+                first = values.filter(is_outside)[0]
                 yield f"{column.name} = {first}: must be from 0" + ("" if limit is None else f" to {limit}")
-        elif column.unit == "rad" and (far := values.abs() > MOST_TURN).any():
-            yield f"{column.name} = {values.filter(far)[0]:g}: must be from -{MOST_TURN:g} to {MOST_TURN:g}"
-        elif column.choices and not (known := values.drop_nulls().is_in(column.choices)).all():
-            yield f"{column.name} = {brief(repr(values.drop_nulls().filter(~known)[0]))}: the run has no such name"
+        elif column.unit == "rad" and (too_large := values.abs() > MOST_TURN).any():
+            yield f"{column.name} = {values.filter(too_large)[0]:g}: must be from -{MOST_TURN:g} to {MOST_TURN:g}"
+        elif column.choices and not (is_known := values.drop_nulls().is_in(column.choices)).all():
+            yield f"{column.name} = {brief(repr(values.drop_nulls().filter(~is_known)[0]))}: the run has no such name"
 
 
 def _sound(path: Path, rows: pl.DataFrame, table: Table, manifest: Manifest) -> pl.DataFrame:
@@ -116,5 +116,5 @@ def _reading(path: Path) -> Iterator[None]:
         raise _damaged(path, str(error)) from error
 
 
-def _damaged(path: Path, why: str) -> RecordError:
-    return RecordError(f"damaged part {path} ({' '.join(why.split())})")
+def _damaged(path: Path, reason: str) -> RecordError:
+    return RecordError(f"damaged part {path} ({' '.join(reason.split())})")

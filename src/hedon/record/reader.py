@@ -149,11 +149,12 @@ class Run:
             RecordError: A part is damaged.
             ArgumentError: xarray is not installed.
         """
-        several = ["species"] if self.columns.several else []
-        told = {
-            each.name: {"units": each.unit, "long_name": each.meaning} for each in self._tables["population"].columns
+        species_dims = ["species"] if self.columns.several else []
+        attributes = {
+            column.name: {"units": column.unit, "long_name": column.meaning}
+            for column in self._tables["population"].columns
         }
-        return to_xarray(self.population().drop("world"), ["seed", *several, "step"], told)
+        return to_xarray(self.population().drop("world"), ["seed", *species_dims, "step"], attributes)
 
     def frames(self) -> pl.LazyFrame:
         """The frames, as a lazy frame, since they can be larger than memory. Empty if none were recorded.
@@ -200,13 +201,13 @@ class Run:
         read = self._read("population", part_paths(self.path, "population"))
         return replace(read, rows=read.rows.sort("world", "step", maintain_order=True))
 
-    def _read(self, name: str, paths: Sequence[Path], used: int | None = None) -> "_Rows":
+    def _read(self, name: str, paths: Sequence[Path], part_count: int | None = None) -> "_Rows":
         """All valid rows of the first parts of a table, and the faults of damaged files.
 
         Args:
             name: Name of the table.
             paths: Paths of all its parts.
-            used: Number of parts to use, since later ones have deaths after the living were written; None for all.
+            part_count: Number of parts to use; later ones have deaths after the living were written; None for all.
         """
         table = self._tables[name]
         frames, faults = [pl.DataFrame(schema=table.polars_schema)], dict[Path, RecordError]()
@@ -216,7 +217,7 @@ class Run:
             except RecordError as error:
                 faults[path] = error
             else:
-                frames += [rows] if used is None or i < used else []
+                frames += [rows] if part_count is None or i < part_count else []
         return _Rows(pl.concat(frames), faults)
 
     @property
@@ -234,8 +235,8 @@ class _Rows:
     def sound(self, skip_damaged: bool) -> pl.DataFrame:
         """The rows; raises an error that lists all faults unless they are skipped."""
         if self.faults and not skip_damaged:
-            listed = "; ".join(map(str, self.faults.values()))
-            raise RecordError(f"{listed}: read the others with skip_damaged=True, or remove the file")
+            fault_list = "; ".join(map(str, self.faults.values()))
+            raise RecordError(f"{fault_list}: read the others with skip_damaged=True, or remove the file")
         return self.rows
 
 
@@ -291,11 +292,11 @@ def open_run(path: Path | str) -> Run:
 def _nearest(folder: Path) -> str:
     """A hint to runs that the user may have meant: above the folder, inside it, or with a similar name."""
     if folder.is_dir():
-        around = [parent for parent in folder.resolve().parents[:2] if holds_run(parent)]
-        inside = sorted(child for child in folder.iterdir() if child.is_dir() and holds_run(child))
-        found = around or inside[-1:]
+        parents = [parent for parent in folder.resolve().parents[:2] if holds_run(parent)]
+        children = sorted(child for child in folder.iterdir() if child.is_dir() and holds_run(child))
+        candidates = parents or children[-1:]
     else:
         siblings = [c for c in folder.parent.iterdir() if holds_run(c)] if folder.parent.is_dir() else []
-        close = difflib.get_close_matches(folder.name, [child.name for child in siblings], n=1)
-        found = [folder.parent / name for name in close]
-    return f"; did you mean {found[0]}?" if found else ""
+        matches = difflib.get_close_matches(folder.name, [child.name for child in siblings], n=1)
+        candidates = [folder.parent / name for name in matches]
+    return f"; did you mean {candidates[0]}?" if candidates else ""

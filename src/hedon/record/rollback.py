@@ -36,8 +36,10 @@ def find_checkpoint(folder: Path, step: int | None = None) -> tuple[Checkpoint |
     if step is not None:
         path = checkpoint_path(folder, step)
         if path not in paths:
-            kept = ", ".join(str(int(path.stem.removeprefix("step-"))) for path in paths)
-            raise RecordError(f"{folder} has no checkpoint of step {step}; it has those of steps {kept or 'none'}")
+            saved_steps = ", ".join(str(int(path.stem.removeprefix("step-"))) for path in paths)
+            raise RecordError(
+                f"{folder} has no checkpoint of step {step}; it has those of steps {saved_steps or 'none'}"
+            )
         return load_checkpoint(path), []
     faults = [f"{path} is a folder, but should be a checkpoint" for path in misplaced_checkpoints(folder)]
     for path in reversed(paths):
@@ -66,10 +68,10 @@ def verify_parts(folder: Path, parts: Mapping[str, Sequence[str]]) -> None:
         for index, digest in enumerate(digests):
             path = part_path(folder, table, index)
             try:
-                same = hashlib.sha256(path.read_bytes()).hexdigest() == digest
+                matches = hashlib.sha256(path.read_bytes()).hexdigest() == digest
             except OSError as error:
                 raise RecordError(f"damaged records: cannot read {path}: {error}{_remedy(folder)}") from error
-            if not same:
+            if not matches:
                 raise RecordError(f"damaged records: {path} was changed after it was written{_remedy(folder)}")
 
 
@@ -91,15 +93,15 @@ def roll_back(folder: Path, parts: Mapping[str, Sequence[str]], step: int) -> No
     Raises:
         RecordError: A file cannot be removed.
     """
-    later = [path for path in checkpoint_paths(folder) if path > checkpoint_path(folder, step)]
-    later += checkpoint_paths(folder, FAULT)
+    obsolete = [path for path in checkpoint_paths(folder) if path > checkpoint_path(folder, step)]
+    obsolete += checkpoint_paths(folder, FAULT)
     for table in TABLE_FOLDERS:
-        last = part_path(folder, table, len(parts.get(table, ())))
-        later += [path for path in part_paths(folder, table) if path >= last]
-    for place in (folder, *(folder / name for name in (*TABLE_FOLDERS, CHECKPOINTS, FAULT))):
-        later += place.glob(".*.tmp")  # left by a killed run on a file system without unnamed files
+        boundary = part_path(folder, table, len(parts.get(table, ())))
+        obsolete += [path for path in part_paths(folder, table) if path >= boundary]
+    for subfolder in (folder, *(folder / name for name in (*TABLE_FOLDERS, CHECKPOINTS, FAULT))):
+        obsolete += subfolder.glob(".*.tmp")  # left by a killed run on a file system without unnamed files
     try:
-        for path in reversed(later):
+        for path in reversed(obsolete):
             path.unlink(missing_ok=True)
     except OSError as error:
         raise RecordError(f"cannot return the records of {folder} to step {step}: {error}") from error

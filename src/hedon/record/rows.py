@@ -27,8 +27,8 @@ def rows_to_frame(table: Table, rows: Mapping[str, ArrayLike]) -> pl.DataFrame:
     Raises:
         RecordError: A column is missing or unknown, has another length, or has a value that its type cannot represent.
     """
-    known = {column.name for column in table.columns}
-    unknown = sorted(set(rows) - known)
+    column_names = {column.name for column in table.columns}
+    unknown = sorted(set(rows) - column_names)
     missing = [c.name for c in table.columns if c.name not in rows and not c.nullable]
     if unknown or missing:
         raise RecordError(f"rows of {table.name}: unknown columns {unknown}, missing columns {missing}")
@@ -50,19 +50,19 @@ def _series(table: Table, column: Column, dtype: type[pl.DataType], array: np.nd
     series = pl.Series(column.name, values, dtype=dtype)
     if not column.nullable:
         return series
-    gone = np.isnan(values) if values.dtype.kind == "f" else values == MISSING_INTEGER
-    return series.set(pl.Series(gone), None) if gone.any() else series
+    is_missing = np.isnan(values) if values.dtype.kind == "f" else values == MISSING_INTEGER
+    return series.set(pl.Series(is_missing), None) if is_missing.any() else series
 
 
 def _cast(table: Table, column: Column, array: np.ndarray) -> np.ndarray:
-    wanted: np.dtype = np.dtype(NUMPY_TYPES[column.dtype])
-    if array.dtype == wanted:
+    target: np.dtype = np.dtype(NUMPY_TYPES[column.dtype])
+    if array.dtype == target:
         return array
-    if wanted.kind == "i":
-        limits = np.iinfo(wanted)
-        outside = array.size > 0 and (array.min() < limits.min or array.max() > limits.max)
-        if array.dtype.kind not in "iub" or outside:
+    if target.kind == "i":
+        limits = np.iinfo(target)
+        is_outside = array.size > 0 and (array.min() < limits.min or array.max() > limits.max)
+        if array.dtype.kind not in "iub" or is_outside:
             raise RecordError(f"rows of {table.name}: {column.name} needs integers of type {column.dtype}")
     elif array.dtype.kind not in "fiub":
         raise RecordError(f"rows of {table.name}: {column.name} needs numbers, got {array.dtype}")
-    return array.astype(wanted)
+    return array.astype(target)

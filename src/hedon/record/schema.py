@@ -92,8 +92,10 @@ class Columns:
 
 def columns_of(config: Config) -> Columns:
     """The columns of a config's runs."""
-    made = layouts(config)
-    rewards = dict.fromkeys(gene.name for each in made.values() for gene in each.genes if gene.role != "neutral")
+    species_layouts = layouts(config)
+    rewards = dict.fromkeys(
+        gene.name for layout in species_layouts.values() for gene in layout.genes if gene.role != "neutral"
+    )
     neutral = max(species.genome.neutral_count for species in config.species.values())
     eaten = {name for species in config.species.values() for name in diet(config, species)}
     prey = tuple(name for name in config.species if name in eaten)
@@ -264,8 +266,8 @@ def _species_columns(columns: Columns) -> list[Column]:
 
 
 def _held_column(name: str, meaning: str, columns: Columns) -> Column:
-    lacked = "; missing for species without it" if columns.several else ""
-    return Column(name, "f32", "amount", meaning + lacked, nullable=columns.several)
+    missing_note = "; missing for species without it" if columns.several else ""
+    return Column(name, "f32", "amount", meaning + missing_note, nullable=columns.several)
 
 
 def _gene_column(name: str, columns: Columns) -> Column:
@@ -273,18 +275,18 @@ def _gene_column(name: str, columns: Columns) -> Column:
 
 
 def _gene_meaning(name: str, columns: Columns) -> str:
-    what = name.removeprefix("w_")
+    channel = name.removeprefix("w_")
     if name in columns.neutral_names:
         return "neutral gene: inherited and mutated, no effect on the reward"
     if name == "w_action":
         return "reward weight for motor action"
-    if what in columns.food_kinds:
-        return f"reward weight for a food of kind {what}"
-    if what in columns.prey:
-        return f"reward weight for eating a {what}"
-    for ending, meaning in SECOND_GENES.items():
-        if what.endswith(ending):
-            return f"{meaning}, beside {name.removesuffix(ending)}"
+    if channel in columns.food_kinds:
+        return f"reward weight for a food of kind {channel}"
+    if channel in columns.prey:
+        return f"reward weight for eating a {channel}"
+    for suffix, meaning in SECOND_GENES.items():
+        if channel.endswith(suffix):
+            return f"{meaning}, beside {name.removesuffix(suffix)}"
     if name == SET_POINT:
         return "energy that is sought, as a share of the capacity"
     if name.startswith(EXTRA):
@@ -292,23 +294,25 @@ def _gene_meaning(name: str, columns: Columns) -> str:
     if name.startswith("g_"):
         number = name.removeprefix("g_")
         return (LEARNING_GENES | FAMILY_GENES).get(number, f"power of ten by which {number} differs")
-    sense, _, seen = what.partition("_")
+    sense, _, target = channel.partition("_")
     verb = {"see": "seeing ", "smell": "smelling "}.get(sense, "")
-    return f"reward weight for {verb}{seen if verb else what}"
+    return f"reward weight for {verb}{target if verb else channel}"
 
 
-def _spread(quantity: str, unit: str, whose: str) -> tuple[Column, ...]:
-    words = {"mean": "mean", "sd": "standard deviation", "min": "minimum", "q25": "lower quartile"}
-    words |= {"median": "median", "q75": "upper quartile", "max": "maximum"}
+def _spread(quantity: str, unit: str, owner: str) -> tuple[Column, ...]:
+    statistics = {"mean": "mean", "sd": "standard deviation", "min": "minimum", "q25": "lower quartile"}
+    statistics |= {"median": "median", "q75": "upper quartile", "max": "maximum"}
     return tuple(
-        Column(f"{quantity}_{name}", "f32", unit, f"{word} of {quantity} {whose}", nullable=True)
-        for name, word in words.items()
+        Column(f"{quantity}_{name}", "f32", unit, f"{statistic} of {quantity} {owner}", nullable=True)
+        for name, statistic in statistics.items()
     )
 
 
 def _table(name: str, row: str, *columns: Column) -> Table:
     counts = Counter(column.name for column in columns)
-    twice = [column for column, count in counts.items() if count > 1]
-    if twice:
-        raise RecordError(f"table {name}: the food kinds make the column {twice[0]} appear twice; rename the food kind")
+    duplicates = [column for column, count in counts.items() if count > 1]
+    if duplicates:
+        raise RecordError(
+            f"table {name}: the food kinds make the column {duplicates[0]} appear twice; rename the food kind"
+        )
     return Table(name, row, columns)

@@ -136,13 +136,15 @@ def own_bodies(
     """
     if not any(set(OWN.values()) & own.genome.set.keys() for own in config.species.values()):
         return np.zeros((0, len(OWN)))
-    found = np.empty((len(species), len(OWN)))
+    properties = np.empty((len(species), len(OWN)))
     for number, own in enumerate(config.species.values()):
-        mine = species == number
+        in_species = species == number
         for i, path in enumerate(OWN.values()):
-            known = path in own.genome.set
-            found[mine, i] = expressed(own, path, genes[gene_column(path)][mine]) if known else value_at(own, path)
-    return found
+            is_genetic = path in own.genome.set
+            properties[in_species, i] = (
+                expressed(own, path, genes[gene_column(path)][in_species]) if is_genetic else value_at(own, path)
+            )
+    return properties
 
 
 def save_snapshot(folder: Path, snapshot: Snapshot) -> None:
@@ -155,7 +157,7 @@ def save_snapshot(folder: Path, snapshot: Snapshot) -> None:
     Raises:
         RecordError: It cannot be written.
     """
-    arrays: dict[str, Any] = {each.name: np.asarray(getattr(snapshot, each.name)) for each in fields(Snapshot)}
+    arrays: dict[str, Any] = {member.name: np.asarray(getattr(snapshot, member.name)) for member in fields(Snapshot)}
     try:
         write_atomically(folder / SNAPSHOT, lambda file: np.savez_compressed(file, **arrays))
     except OSError as error:
@@ -173,14 +175,14 @@ def load_snapshot(folder: Path) -> Snapshot | None:
         return None
     try:
         with np.load(path, allow_pickle=False) as file:
-            values = {each.name: file[each.name] for each in fields(Snapshot) if each.name in file}
+            values = {member.name: file[member.name] for member in fields(Snapshot) if member.name in file}
         scalars = {name: value.item() for name, value in values.items() if value.ndim == 0}
         names = {name: tuple(values[name].tolist()) for name in ("food_kinds", "species_names") if name in values}
         snapshot = Snapshot(**{**values, **scalars, **names})
         _require_drawable(snapshot)
     except Exception as error:  # a file that is not from hedon can raise any exception
-        mend = f"`hedon resume {folder}` writes it again, and without this file a report leaves its picture out"
-        raise RecordError(f"damaged snapshot {path}: {brief(str(error))}; {mend}") from error
+        remedy = f"`hedon resume {folder}` writes it again, and without this file a report leaves its picture out"
+        raise RecordError(f"damaged snapshot {path}: {brief(str(error))}; {remedy}") from error
     return snapshot
 
 
@@ -193,10 +195,10 @@ def _require_drawable(snapshot: Snapshot) -> None:
         raise ValueError(f"angle has numbers beyond {MOST_TURN:g}")
     for name, names in (("species", snapshot.species_names), ("food_kind", snapshot.food_kinds)):
         index = getattr(snapshot, name)
-        if not all(isinstance(each, str) for each in names) or ((index < 0) | (index >= len(names))).any():
+        if not all(isinstance(text, str) for text in names) or ((index < 0) | (index >= len(names))).any():
             raise ValueError(f"{name} does not fit the names {brief(repr(names))}")
-    wrong_rays = (snapshot.ray_count < 0) | (snapshot.ray_count > snapshot.rays.shape[1])
-    if len(snapshot.radius) != len(snapshot.species_names) or wrong_rays.any():
+    is_invalid = (snapshot.ray_count < 0) | (snapshot.ray_count > snapshot.rays.shape[1])
+    if len(snapshot.radius) != len(snapshot.species_names) or is_invalid.any():
         raise ValueError("the bodies of the species do not fit their names or rays")
     for name in ("world", "seed", "step"):
         if not isinstance(getattr(snapshot, name), int):

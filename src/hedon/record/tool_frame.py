@@ -22,8 +22,8 @@ def require_frame(name: Any) -> None:
         ArgumentError: The name is not one of `FRAMES`, or pandas is not installed.
     """
     if name not in FRAMES:
-        close = difflib.get_close_matches(str(name), FRAMES, n=1)
-        hint = f"; did you mean {close[0]!r}?" if close else ""
+        matches = difflib.get_close_matches(str(name), FRAMES, n=1)
+        hint = f"; did you mean {matches[0]!r}?" if matches else ""
         raise ArgumentError(f"frame = {brief(repr(name), 60)}: must be one of {', '.join(FRAMES)}{hint}")
     if name == "pandas":
         _pandas()

@@ -182,12 +182,12 @@ class Writer:
             if not isinstance(error, RecordError):  # otherwise the same error is already being raised
                 raise
 
-    def _prepare(self, config_text: str, manifest: Manifest, beginning: Mapping[str, bytes]) -> None:
+    def _prepare(self, config_text: str, manifest: Manifest, initial_files: Mapping[str, bytes]) -> None:
         require_no_run(self.folder)
         try:
             for table in self.tables:
                 (self.folder / table).mkdir(parents=True, exist_ok=True)
-            for name, content in beginning.items():
+            for name, content in initial_files.items():
                 write_atomically(self.folder / name, lambda file, content=content: file.write(content))
             write_atomically(self.folder / CONFIG, lambda file: file.write(config_text.encode()))
         except OSError as error:
@@ -197,7 +197,7 @@ class Writer:
     def _frame(self, table: str, rows: Sequence[Rows]) -> pl.DataFrame:
         schema = self.tables[table]
         empty = pl.DataFrame(schema=schema.polars_schema)
-        return pl.concat([empty, *(rows_to_frame(schema, each) for each in rows)])
+        return pl.concat([empty, *(rows_to_frame(schema, block) for block in rows)])
 
     def _put(self, item: object) -> None:
         self._raise_fault()
@@ -252,7 +252,7 @@ class Writer:
 def _identity(path: Path) -> tuple[int, int] | None:
     """The file system's identity of a folder; None if the folder does not exist."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found.st_dev, found.st_ino
+    return status.st_dev, status.st_ino
