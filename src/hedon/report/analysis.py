@@ -65,8 +65,8 @@ def analyze(runs: Sequence[Run], topics: Sequence[str] = tuple(TOPICS), tell: Te
     conditions = by_condition(read_worlds(runs))
     several = len(conditions) > 1
     tables = {table.name: replace(table, several=several) for table in run_topics(conditions, topics, tell)}
-    told = answers(conditions, tables, runs) if "drift" in topics else {}
-    return Analysis(tuple(runs), conditions, tables, told, unfinished(runs, conditions))
+    answer_lines = answers(conditions, tables, runs) if "drift" in topics else {}
+    return Analysis(tuple(runs), conditions, tables, answer_lines, unfinished(runs, conditions))
 
 
 def write_analysis(analysis: Analysis, folder: Path) -> list[Path]:

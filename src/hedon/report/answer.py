@@ -50,8 +50,10 @@ def simple_answer(
     files: Mapping[str, str] | None = None,
 ) -> Answer:
     """The answer to one question: its figures, then a section for each visible table."""
-    drawn = [drawn_file(figure) for figure in figures]
-    page = Page(title, lead, [PageSection("", drawn), *(table_section(each) for each in tables if each.shown)])
+    figure_files = [drawn_file(figure) for figure in figures]
+    page = Page(
+        title, lead, [PageSection("", figure_files), *(table_section(table) for table in tables if table.shown)]
+    )
     return Answer(name, page, content, tables, files or {})
 
 
@@ -63,8 +65,8 @@ def table_section(table: ResultTable) -> PageSection:
 def drawn_file(named: NamedFigure, path: str = "", form: str = "svg") -> FigureFile:
     """A figure as an SVG file, at `path` or named after the figure, and also in the format `form`."""
     path, svg = path or f"{named.name}.svg", svg_bytes(named.figure)
-    others = {} if form == "svg" else {f"{path.removesuffix('svg')}{form}": FORMATS[form](named.figure)}
-    return FigureFile(named.question, path, svg, named.caption, others)
+    other_formats = {} if form == "svg" else {f"{path.removesuffix('svg')}{form}": FORMATS[form](named.figure)}
+    return FigureFile(named.question, path, svg, named.caption, other_formats)
 
 
 def write_answer(folder: Path, answer: Answer) -> list[Path]:
@@ -81,22 +83,22 @@ def replace_files(folder: Path, answer: Answer) -> list[Path]:
     """Does the work of `write_answer`; no other process may be writing to the folder."""
     name, page = answer.name, answer.page
     blocks = [block for section in page.sections for block in section.blocks]
-    drawn = [block for block in blocks if isinstance(block, FigureFile)]
-    figures = {block.path: block.svg for block in drawn}
+    figure_files = [block for block in blocks if isinstance(block, FigureFile)]
+    figures = {block.path: block.svg for block in figure_files}
     files: dict[str, str | bytes] = {f"{name}.html": html_page(page), f"{name}.md": markdown_page(page), **answer.files}
     stale: set[str] = set()
     if answer.content is not None:
         summary = folder / f"{name}.json"
-        own = {Path(path).stem: path for path in figures}
-        shown = {each.name: table_json(each) for each in answer.tables}
-        content = {**answer.content, "figures": list(own), "tables": shown}
+        figure_paths = {Path(path).stem: path for path in figures}
+        table_contents = {each.name: table_json(each) for each in answer.tables}
+        content = {**answer.content, "figures": list(figure_paths), "tables": table_contents}
         text = json.dumps(plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
         files = {summary.name: text, **files}
-        stale = earlier_names(summary, "figures") - own.keys()
-    places = {str(Path(path).parent) for path in figures} or {"."}
-    for each in (folder / place / f"{stem}.svg" for place in places for stem in stale):
+        stale = earlier_names(summary, "figures") - figure_paths.keys()
+    subfolders = {str(Path(path).parent) for path in figures} or {"."}
+    for each in (folder / subfolder / f"{stem}.svg" for subfolder in subfolders for stem in stale):
         each.unlink(missing_ok=True)
-    figures |= {path: content for block in drawn for path, content in block.others.items()}
+    figures |= {path: content for block in figure_files for path, content in block.others.items()}
     for path, text in {**files, **figures}.items():
         data = text.encode() if isinstance(text, str) else text
         (folder / path).parent.mkdir(parents=True, exist_ok=True)

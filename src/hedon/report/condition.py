@@ -24,30 +24,30 @@ from hedon.report import figure
 
 def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable]) -> Iterator[NamedFigure]:
     """Draws the figures of a condition, one at a time."""
-    first = worlds[0]
-    mine = {name: _of_condition(table.rows, first.condition) for name, table in tables.items()}
-    colors = meal_colors(first.config, first.prey)
-    titles = weight_titles(first.reward_names, first.neutral_names)
+    first_world = worlds[0]
+    condition_tables = {name: _of_condition(table.rows, first_world.condition) for name, table in tables.items()}
+    colors = meal_colors(first_world.config, first_world.prey)
+    titles = weight_titles(first_world.reward_names, first_world.neutral_names)
     tints = weight_colors(titles, colors)
     living = [last_living(world.agents, world.population) for world in worlds]
     agents = pl.concat([rows.with_columns(world=_index(i)) for i, rows in enumerate(living)])
     population = pl.concat([world.population.with_columns(world=_index(i)) for i, world in enumerate(worlds)])
 
     def rows(name: str) -> pl.DataFrame:
-        return mine.get(name, pl.DataFrame())
+        return condition_tables.get(name, pl.DataFrame())
 
-    meals, neutral = (*first.food_kinds, *first.prey), first.neutral_names
-    courses = HistoryRow(population, drift=drift_bands(worlds))
-    yield figure.HISTORY.drawn(draw_histories([courses], first.reward_names, neutral, colors))
-    yield figure.WEIGHTS.drawn(draw_weights(agents, first.reward_names, drift_genes(worlds, living)))
+    meals, neutral = (*first_world.food_kinds, *first_world.prey), first_world.neutral_names
+    history_row = HistoryRow(population, drift=drift_bands(worlds))
+    yield figure.HISTORY.drawn(draw_histories([history_row], first_world.reward_names, neutral, colors))
+    yield figure.WEIGHTS.drawn(draw_weights(agents, first_world.reward_names, drift_genes(worlds, living)))
     yield figure.POPULATION.drawn(draw_population(population, meals, colors))
     yield figure.REGIME.drawn(draw_regimes(rows("regime_time")))
     yield figure.SURVIVAL.drawn(draw_survival(rows("survival"), rows("lifetime_world")))
-    selected = draw_selection(rows("selection_window"), rows("selection_world"), titles, tints)
-    yield figure.SELECTION.drawn(selected)
+    selection = draw_selection(rows("selection_window"), rows("selection_world"), titles, tints)
+    yield figure.SELECTION.drawn(selection)
     yield figure.LINEAGE.drawn(draw_lineages(rows("lineage"), titles, tints))
-    energies = draw_demography(first.own, [world.population for world in worlds])
-    yield figure.DEMOGRAPHY.drawn(energies)
+    demography = draw_demography(first_world.own, [world.population for world in worlds])
+    yield figure.DEMOGRAPHY.drawn(demography)
 
 
 def _of_condition(rows: pl.DataFrame, condition: str) -> pl.DataFrame:

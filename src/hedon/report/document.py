@@ -140,12 +140,12 @@ def _table_section(table: Table) -> str:
 
 def _further_columns(table: Table) -> str:
     """The columns of a table that exist only in worlds with further mechanisms."""
-    known = {column.name for column in table.columns}
+    column_names = {column.name for column in table.columns}
     rows = ["| only with | column | type | unit | meaning |", "|---|---|---|---|---|"]
     for mechanism, columns in _MECHANISMS.items():
         for column in run_tables(columns)[table.name].columns:
-            if column.name not in known:
-                known.add(column.name)
+            if column.name not in column_names:
+                column_names.add(column.name)
                 dtype = f"{column.dtype}, null" if column.nullable else column.dtype
                 rows.append(f"| {mechanism} | `{column.name}` | {dtype} | {column.unit} | {column.meaning} |")
     return "\n".join(rows) + "\n"
@@ -156,9 +156,9 @@ def _key_table(keys: Mapping[str, str]) -> str:
     return "\n".join(["| key | meaning |", "|---|---|", *rows]) + "\n"
 
 
-def _new_keys(keys: Mapping[str, str], others: Mapping[str, str]) -> str:
-    """A table of the keys that are missing from `others` or have another meaning there."""
-    return _key_table({key: meaning for key, meaning in keys.items() if others.get(key) != meaning})
+def _new_keys(keys: Mapping[str, str], other_keys: Mapping[str, str]) -> str:
+    """A table of the keys that are missing from `other_keys` or have another meaning there."""
+    return _key_table({key: meaning for key, meaning in keys.items() if other_keys.get(key) != meaning})
 
 
 def _attributes(kind: type) -> str:

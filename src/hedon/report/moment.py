@@ -21,14 +21,14 @@ def unfinished(runs: Iterable[Run], conditions: Conditions) -> list[str]:
 
 
 def _sentence(run: Run, worlds: Sequence[WorldRecord]) -> str:
-    begin = f"The run {run.path.name} has not finished (status {run.manifest.status})"
-    ends = [int(world.population["step"].to_numpy().max(initial=0)) for world in worlds]
-    shown = max(ends, default=0)
-    known = [world.recorded_step() for world in worlds]
-    behind = [step for step, end in zip(known, ends, strict=True) if step < end]
-    if not behind or run.damaged_parts():
-        return f"{begin}: this is of what its records hold up to step {shown:,}."
+    opening = f"The run {run.path.name} has not finished (status {run.manifest.status})"
+    last_steps = [int(world.population["step"].to_numpy().max(initial=0)) for world in worlds]
+    latest_step = max(last_steps, default=0)
+    recorded_steps = [world.recorded_step() for world in worlds]
+    lagging = [step for step, end in zip(recorded_steps, last_steps, strict=True) if step < end]
+    if not lagging or run.damaged_parts():
+        return f"{opening}: this is of what its records hold up to step {latest_step:,}."
     return (
-        f"{begin}: births, deaths, foods eaten and agents alive are those up to step {shown:,}; lifetimes, weights and "
-        f"whatever else is of single agents, those up to step {min(behind):,}."
+        f"{opening}: births, deaths, foods eaten and agents alive are those up to step {latest_step:,}; lifetimes, "
+        f"weights and whatever else is of single agents, those up to step {min(lagging):,}."
     )

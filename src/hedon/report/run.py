@@ -69,21 +69,21 @@ def write_report(
         ArgumentError: The format is unknown.
         RecordError: A folder cannot be written, or a `final.npz` is damaged; in the latter case all other files exist.
     """
-    if figures not in (known := (*FORMATS, NO_FIGURES)):
-        raise ArgumentError(f"figures = {brief(repr(figures))}: must be one of {', '.join(known)}")
+    if figures not in (formats := (*FORMATS, NO_FIGURES)):
+        raise ArgumentError(f"figures = {brief(repr(figures))}: must be one of {', '.join(formats)}")
     folder = Path(folder or (runs[0].path if len(runs) == 1 else "report"))
     faults: list[RecordError] = []
     with one_writer(folder, "the report"):
         # All figures together count as many steps as the topics.
-        analysis = analyze(runs, tell=lambda done, of, step: tell(done, 2 * of, step))
+        analysis = analyze(runs, tell=lambda done, total, step: tell(done, 2 * total, step))
         tell(len(TOPICS), 2 * len(TOPICS), "writing" if figures == NO_FIGURES else "drawing and writing")
         summaries = [_write_summary(run) for run in analysis.runs]
-        drawn: dict[str, list[FigureFile]] = {}
-        for condition, named in () if figures == NO_FIGURES else _figures(analysis, faults):
-            taken = {figure.path for group in drawn.values() for figure in group}
-            drawn.setdefault(condition, []).append(_as_file(named, taken, figures))
+        figure_files: dict[str, list[FigureFile]] = {}
+        for condition, named_figure in () if figures == NO_FIGURES else _figures(analysis, faults):
+            used_paths = {figure.path for group in figure_files.values() for figure in group}
+            figure_files.setdefault(condition, []).append(_as_file(named_figure, used_paths, figures))
         answers = write_analysis(analysis, folder / ANALYSIS)[0]
-        pages = replace_files(folder, Answer("report", report_page(analysis, drawn)))
+        pages = replace_files(folder, Answer("report", report_page(analysis, figure_files)))
     if faults:
         raise faults[0]
     return [*summaries, *pages[:2], answers, *pages[2:]]
@@ -96,24 +96,28 @@ def report_page(analysis: Analysis, figures: Mapping[str, Sequence[FigureFile]])
         analysis: The results to show.
         figures: The figures of each condition; the first shows what evolved.
     """
-    shown = {name: table for name, table in analysis.tables.items() if table.shown}
-    verdict = [shown.pop("verdict")] if "verdict" in shown else []
-    evolved, details = [], []
+    visible_tables = {name: table for name, table in analysis.tables.items() if table.shown}
+    verdict = [visible_tables.pop("verdict")] if "verdict" in visible_tables else []
+    evolution_sections, detail_sections = [], []
     for number, (name, worlds) in enumerate(analysis.conditions.items(), start=1):
-        drawn = figures.get(name, ())
+        figure_files = figures.get(name, ())
         warnings = _lines(setting_warnings(worlds[0].config, worlds[0].species))
-        lists = [SETTING, warnings] if warnings else []
-        evolved.append(PageSection(f"{name}: what evolved?", [_lines(analysis.answers.get(name, ())), *drawn[:1]]))
-        details.append(PageSection(name, [describe_worlds(worlds), *lists, *drawn[1:]], f"condition-{number}"))
+        setting_list = [SETTING, warnings] if warnings else []
+        evolution_sections.append(
+            PageSection(f"{name}: what evolved?", [_lines(analysis.answers.get(name, ())), *figure_files[:1]])
+        )
+        detail_sections.append(
+            PageSection(name, [describe_worlds(worlds), *setting_list, *figure_files[1:]], f"condition-{number}")
+        )
     return Page(
         " · ".join(analysis.conditions),
         f"Made by hedon from records of version {versions(analysis.runs)}. Intervals are 95 %, over worlds, and shown "
         f"from five worlds on.\n\n{EXPLANATION}",
         [
-            *evolved,
+            *evolution_sections,
             *(PageSection(table.title, [table], "verdicts", "Verdicts") for table in verdict),
-            *details,
-            PageSection("Tables", list(shown.values()), "tables"),
+            *detail_sections,
+            PageSection("Tables", list(visible_tables.values()), "tables"),
         ],
         _lines([*analysis.unfinished, *shared_pasts(analysis.runs), *narrow_intervals(analysis.conditions)]),
         analysis.conditions,
@@ -123,15 +127,16 @@ def report_page(analysis: Analysis, figures: Mapping[str, Sequence[FigureFile]])
 
 def narrow_intervals(conditions: Conditions) -> list[str]:
     """A caution for each condition in which some worlds died out, where t intervals are too narrow."""
-    told = []
+    cautions = []
     for name, worlds in conditions.items():
-        gone = sum(world.extinct_step is not None for world in worlds)
-        if 0 < gone < len(worlds) and len(worlds) >= FOR_INTERVAL:
-            told.append(
-                f"{gone} of {len(worlds)} worlds of {name} died out, so intervals of its numbers alive are too narrow: "
-                "with one world in five at 0 they miss the mean in 24 % of cases with five worlds, in 11 % with ten."
+        extinct_count = sum(world.extinct_step is not None for world in worlds)
+        if 0 < extinct_count < len(worlds) and len(worlds) >= FOR_INTERVAL:
+            cautions.append(
+                f"{extinct_count} of {len(worlds)} worlds of {name} died out, so intervals of its numbers alive are "
+                "too narrow: with one world in five at 0 they miss the mean in 24 % of cases with five worlds, "
+                "in 11 % with ten."
             )
-    return told
+    return cautions
 
 
 def _lines(sentences: Iterable[str]) -> tuple[str, ...]:
@@ -159,10 +164,10 @@ def _figures(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[st
     for condition, records in analysis.conditions.items():
         figures = condition_figures(records, analysis.tables)  # drawn one at a time
         yield condition, _with_prefix(condition, next(figures), several=several)
-        for run, snapshot in (each[1:] for each in snapshots if each[0] == condition):
+        for run, snapshot in (entry[1:] for entry in snapshots if entry[0] == condition):
             yield condition, _with_prefix(run.path.name, _world(run, snapshot), several=len(analysis.runs) > 1)
-        for named in figures:
-            yield condition, _with_prefix(condition, named, several=several)
+        for named_figure in figures:
+            yield condition, _with_prefix(condition, named_figure, several=several)
 
 
 def _snapshots(analysis: Analysis, faults: list[RecordError]) -> Iterator[tuple[str, Run, Snapshot]]:
@@ -189,17 +194,17 @@ def _world(run: Run, snapshot: Snapshot) -> NamedFigure:
 
 def _condition_of(run: Run, analysis: Analysis) -> str | None:
     """The condition that a run's worlds belong to; None if all of them are taken from another run."""
-    found = (c for c, worlds in analysis.conditions.items() for world in worlds if world.run == run.path.name)
-    return next(found, None)
+    matching = (c for c, worlds in analysis.conditions.items() for world in worlds if world.run == run.path.name)
+    return next(matching, None)
 
 
-def _with_prefix(prefix: str, named: NamedFigure, *, several: bool) -> NamedFigure:
+def _with_prefix(prefix: str, named_figure: NamedFigure, *, several: bool) -> NamedFigure:
     """Makes the name unique if the report has several figures of this kind."""
     slug = re.sub(r"[^a-z0-9]+", "-", prefix.lower()).strip("-")
-    return replace(named, name=f"{slug}-{named.name}") if several else named
+    return replace(named_figure, name=f"{slug}-{named_figure.name}") if several else named_figure
 
 
-def _as_file(named: NamedFigure, taken: Container[str], form: str) -> FigureFile:
+def _as_file(named_figure: NamedFigure, used_paths: Container[str], form: str) -> FigureFile:
     """A figure as a file; a number is added if its name is taken, since prefixes may differ only in punctuation."""
-    names = (f"{FIGURES}/{named.name}{end}.svg" for end in chain([""], (f"-{i}" for i in count(2))))
-    return drawn_file(named, next(name for name in names if name not in taken), form)
+    names = (f"{FIGURES}/{named_figure.name}{end}.svg" for end in chain([""], (f"-{i}" for i in count(2))))
+    return drawn_file(named_figure, next(name for name in names if name not in used_paths), form)

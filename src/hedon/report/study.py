@@ -40,24 +40,28 @@ def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) ->
         RecordError: The folder cannot be written.
     """
     inputs = {item.name: gathered.inputs(item) for study in studies for item in study.items}
-    made = {item.name: _make(item, inputs[item.name], gathered) for study in studies for item in study.items}
+    built_items = {item.name: _make(item, inputs[item.name], gathered) for study in studies for item in study.items}
     claims = [claim for study in studies for claim in study.claims]
     conditions = by_condition(gathered.demanded())
-    overall = [found for found in (*verdict(conditions, claims), *regime(conditions)) if not found.rows.is_empty()]
-    tables = [*overall, *(found for one in made.values() for found in one.tables), _every_world(inputs)]
-    files = {f"{TABLES}/{found.name}.csv": table_csv(found) for found in tables}
+    overall = [table for table in (*verdict(conditions, claims), *regime(conditions)) if not table.rows.is_empty()]
+    tables = [
+        *overall,
+        *(table for built_item in built_items.values() for table in built_item.tables),
+        _every_world(inputs),
+    ]
+    files = {f"{TABLES}/{table.name}.csv": table_csv(table) for table in tables}
     page = Page(
         " · ".join(study.title for study in studies),
         _lead(gathered),
         [
-            *(table_section(found) for found in overall if found.shown),
-            *(section for study in studies for section in _sections(study, made)),
+            *(table_section(table) for table in overall if table.shown),
+            *(section for study in studies for section in _sections(study, built_items)),
         ],
         [f"Left out: {escape_markdown(fault)}" for fault in gathered.faults],
         conditions,
         gathered.runs,
     )
-    write_answer(folder, Answer(NAME, page, _json(gathered, made.values()), tables, files))
+    write_answer(folder, Answer(NAME, page, _json(gathered, built_items.values()), tables, files))
     return folder / f"{NAME}.html"
 
 
@@ -82,24 +86,29 @@ class BuiltItem:
 
     def section(self) -> PageSection:
         """Its part of the page."""
-        shown = [part for part in self.parts if isinstance(part, FigureFile) or (part.shown and part.rows.height)]
+        visible_parts = [
+            part for part in self.parts if isinstance(part, FigureFile) or (part.shown and part.rows.height)
+        ]
         folded = [] if self.worlds is None else [Folded(self.worlds)]
         return PageSection(
-            self.item.title, [self.item.says, *(shown or [NOTHING]), *folded], self.item.name, self.item.name
+            self.item.title, [self.item.says, *(visible_parts or [NOTHING]), *folded], self.item.name, self.item.name
         )
 
 
 def _lead(gathered: Gathered) -> str:
-    made = f", from records of version {versions(gathered.runs)}" if gathered.runs else ""
+    version_note = f", from records of version {versions(gathered.runs)}" if gathered.runs else ""
     return (
-        f"With fidelity {gathered.request.fidelity}, unless an item says otherwise{made}. Intervals are 95 %, over "
-        "worlds, and shown from five worlds on unless a table says otherwise."
+        f"With fidelity {gathered.request.fidelity}, unless an item says otherwise{version_note}. Intervals are "
+        "95 %, over worlds, and shown from five worlds on unless a table says otherwise."
     )
 
 
-def _sections(study: Study, made: Mapping[str, BuiltItem]) -> list[PageSection]:
+def _sections(study: Study, built_items: Mapping[str, BuiltItem]) -> list[PageSection]:
     expected = [f"Expected: {study.expectation}"] if study.expectation else []
-    return [PageSection(study.title, [study.question, *expected]), *(made[item.name].section() for item in study.items)]
+    return [
+        PageSection(study.title, [study.question, *expected]),
+        *(built_items[item.name].section() for item in study.items),
+    ]
 
 
 def _make(item: Item, inputs: ItemInputs, gathered: Gathered) -> BuiltItem:
@@ -124,10 +133,10 @@ def _worlds_table(item: Item, inputs: ItemInputs, gathered: Gathered) -> ResultT
     return make_table(f"{item.name}-worlds", "Made of", rows, note + ".")
 
 
-def _worlds_row(label: str, worlds: Sequence[WorldRecord], asked: int) -> Mapping[str, Any]:
+def _worlds_row(label: str, worlds: Sequence[WorldRecord], requested: int) -> Mapping[str, Any]:
     return {
         "setting": label,
-        "worlds": f"{len(worlds)} of {asked}",
+        "worlds": f"{len(worlds)} of {requested}",
         "steps_of_the_shortest": min((w.last_step for w in worlds if w.extinct_step is None), default=None),
         "died_out": sum(world.extinct_step is not None for world in worlds),
         "agents": sum(world.agents.height for world in worlds),
@@ -139,14 +148,14 @@ def _every_world(inputs: Mapping[str, ItemInputs]) -> ResultTable:
 
     A label that stands for different worlds in different items is prefixed with the item's name.
     """
-    found: dict[str, list[WorldRecord]] = {}
-    for item, own in inputs.items():
-        for label, worlds in own.worlds.items():
-            same = _alike(found.get(label, worlds), worlds)
-            found[label if same else f"{item}: {label}"] = list(worlds)
+    worlds_by_label: dict[str, list[WorldRecord]] = {}
+    for item, item_inputs in inputs.items():
+        for label, worlds in item_inputs.worlds.items():
+            is_same = _alike(worlds_by_label.get(label, worlds), worlds)
+            worlds_by_label[label if is_same else f"{item}: {label}"] = list(worlds)
     rows = [
         {CONDITION: label, "steps": world.end_step, **world_row([world])}
-        for label, worlds in found.items()
+        for label, worlds in worlds_by_label.items()
         for world in worlds
     ]
     return make_table(WORLDS, "Each world by itself", rows, shown=False)
@@ -157,21 +166,21 @@ def _alike(worlds: Sequence[WorldRecord], others: Sequence[WorldRecord]) -> bool
     return [(w.condition, w.seed, w.end_step) for w in worlds] == [(w.condition, w.seed, w.end_step) for w in others]
 
 
-def _json(gathered: Gathered, made: Iterable[BuiltItem]) -> dict[str, Any]:
+def _json(gathered: Gathered, built_items: Iterable[BuiltItem]) -> dict[str, Any]:
     request = gathered.request
     return {
         "fidelity": request.fidelity,
         "items": [
             {
-                "name": one.item.name,
-                "title": one.item.title,
-                "asked": asdict(request.scale(one.item)),
-                "scale": asdict(one.item.scale),
-                "worlds": one.worlds.rows.to_dicts() if one.worlds is not None else [],
-                "figures": [part.path for part in one.parts if isinstance(part, FigureFile)],
-                "tables": [found.name for found in one.tables],
+                "name": built_item.item.name,
+                "title": built_item.item.title,
+                "asked": asdict(request.scale(built_item.item)),
+                "scale": asdict(built_item.item.scale),
+                "worlds": built_item.worlds.rows.to_dicts() if built_item.worlds is not None else [],
+                "figures": [part.path for part in built_item.parts if isinstance(part, FigureFile)],
+                "tables": [table.name for table in built_item.tables],
             }
-            for one in made
+            for built_item in built_items
         ],
         "runs": [{"folder": run.path.name, "manifest": asdict(run.manifest)} for run in gathered.runs],
         "unreadable": list(gathered.faults),

@@ -26,17 +26,17 @@ def cells(table: ResultTable, hidden: Sequence[str] = HIDDEN) -> tuple[list[str]
     so is every column without a value.
     """
     rows = _with_neutral_folded(table.rows)
-    single = "condition" in rows.columns and rows["condition"].n_unique() == 1 and not table.several
+    single_condition = "condition" in rows.columns and rows["condition"].n_unique() == 1 and not table.several
     merged = all(bound in rows.columns for bound in _INTERVAL) and "answer" not in rows.columns
     names = [
         c
         for c in rows.columns
-        if c not in hidden and not (c == "condition" and single) and not (c == "high" and merged)
+        if c not in hidden and not (c == "condition" and single_condition) and not (c == "high" and merged)
     ]
     headers = ["95 % interval" if merged and c == "low" else c if "." in c else c.replace("_", " ") for c in names]
-    shown = [[_cell(row, c, merged) for c in names] for row in rows.iter_rows(named=True)]
-    filled = [i for i in range(len(names)) if any(row[i] for row in shown)]
-    return [headers[i] for i in filled], [[row[i] for i in filled] for row in shown]
+    cell_rows = [[_cell(row, c, merged) for c in names] for row in rows.iter_rows(named=True)]
+    filled = [i for i in range(len(names)) if any(row[i] for row in cell_rows)]
+    return [headers[i] for i in filled], [[row[i] for i in filled] for row in cell_rows]
 
 
 def table_json(table: ResultTable) -> dict[str, Any]:
@@ -56,20 +56,20 @@ def _with_neutral_folded(rows: pl.DataFrame) -> pl.DataFrame:
     if rows.is_empty() or rows.schema.get("weight") != pl.String:
         return rows
     keys = [name for name in _KEYS if name in rows.columns]
-    marked = rows.with_columns(pl.int_range(pl.len()).alias("place"))
+    numbered = rows.with_columns(pl.int_range(pl.len()).alias("place"))
     is_neutral = pl.col("weight").str.starts_with("neutral_").fill_null(False)
-    if marked.filter(is_neutral)["weight"].n_unique() < 2:
+    if numbered.filter(is_neutral)["weight"].n_unique() < 2:
         return rows
     values = {
         name: pl.col(name).mean() if kind.is_float() else pl.col(name).max()
         for name, kind in rows.schema.items()
         if kind.is_numeric() and name not in _INTERVAL and not name.startswith("p")
     }
-    small = pl.format(": {} with p < 0.05", (pl.col("p") < 0.05).sum()) if "p" in rows.columns else pl.lit("")
-    label = pl.format("{} neutral{}", pl.len(), small.first()).alias("weight")
-    groups = marked.filter(is_neutral).group_by(keys or [pl.lit(0).alias("all")], maintain_order=True)
+    small_p = pl.format(": {} with p < 0.05", (pl.col("p") < 0.05).sum()) if "p" in rows.columns else pl.lit("")
+    label = pl.format("{} neutral{}", pl.len(), small_p.first()).alias("weight")
+    groups = numbered.filter(is_neutral).group_by(keys or [pl.lit(0).alias("all")], maintain_order=True)
     lines = groups.agg(pl.col("place").min(), label, **values)
-    return pl.concat([marked.filter(~is_neutral), lines], how="diagonal_relaxed").sort("place").select(rows.columns)
+    return pl.concat([numbered.filter(~is_neutral), lines], how="diagonal_relaxed").sort("place").select(rows.columns)
 
 
 def is_numeric(rows: Sequence[Sequence[str]], column: int) -> bool:

@@ -41,8 +41,8 @@ def require_topics(names: Sequence[str]) -> Sequence[str]:
     """
     for name in names:
         if name not in TOPICS:
-            near = nearest(name, TOPICS)
-            hint = f"; did you mean {near}?" if near else "."
+            suggestion = nearest(name, TOPICS)
+            hint = f"; did you mean {suggestion}?" if suggestion else "."
             raise TopicError(f"there is no topic {name!r}{hint} There are: {', '.join(TOPICS)}")
     return names
 
@@ -55,8 +55,8 @@ def choose_topics(names: str | None) -> tuple[str, ...]:
     """
     if names is None:
         return tuple(TOPICS)
-    wanted = require_topics([name.strip() for name in names.split(",") if name.strip()])
-    return tuple(name for name in TOPICS if name in wanted)
+    requested = require_topics([name.strip() for name in names.split(",") if name.strip()])
+    return tuple(name for name in TOPICS if name in requested)
 
 
 ONE_PARENT = ("genealogy", "price", "drift", "reversion", "mutation")
@@ -79,9 +79,9 @@ def run_topics(
     Tables without rows are omitted, and worlds with two parents are left out of topics that need one parent.
     """
     trees = {
-        condition: alone
+        condition: asexual_worlds
         for condition, worlds in conditions.items()
-        if (alone := [world for world in worlds if world.own.birth.mating == "none"])
+        if (asexual_worlds := [world for world in worlds if world.own.birth.mating == "none"])
     }
     tables: list[ResultTable] = []
     for done, name in enumerate(names):

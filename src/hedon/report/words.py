@@ -41,14 +41,14 @@ def _answers(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable], r
         return [UNKNOWN]
     corrected = tests.filter(pl.col("p_holm").is_not_null() & (pl.col("test") != "marker"))  # another family of tests
     seconds = _seconds(worlds, runs)
-    who = _who(scores, worlds)
-    told = [] if worlds[0].own.learning.policy == "ppo" else [UNLEARNED]
+    subject = _who(scores, worlds)
+    sentences = [] if worlds[0].own.learning.policy == "ppo" else [UNLEARNED]
     for name in worlds[0].reward_names:
         row = corrected.filter((pl.col("weight") == name) & (pl.col("test") == "direction"))
         if not row.is_empty():
-            ended = f"{who} {_ended(name, scores.filter(pl.col('weight') == name))}"
-            told.append(f"{ended}: {_verdict(row.row(0, named=True), corrected.height, seconds)}")
-    return told or [UNKNOWN]
+            sentence = f"{subject} {_ended(name, scores.filter(pl.col('weight') == name))}"
+            sentences.append(f"{sentence}: {_verdict(row.row(0, named=True), corrected.height, seconds)}")
+    return sentences or [UNKNOWN]
 
 
 def _rows(table: ResultTable | None, condition: str) -> pl.DataFrame:
@@ -60,8 +60,8 @@ def _rows(table: ResultTable | None, condition: str) -> pl.DataFrame:
 def _who(scores: pl.DataFrame, worlds: Sequence[WorldRecord]) -> str:
     """The agents whose weights are meant, as the start of a sentence."""
     extinct = any(world.extinct_step is not None for world in worlds)
-    last = ", or at the last record of a world that died out" if extinct else ""
-    return f"Among the agents alive at the end{last} (mean generation {_span(scores['generation'])}), the"
+    extinct_clause = ", or at the last record of a world that died out" if extinct else ""
+    return f"Among the agents alive at the end{extinct_clause} (mean generation {_span(scores['generation'])}), the"
 
 
 def _ended(name: str, scores: pl.DataFrame) -> str:
@@ -72,16 +72,16 @@ def _ended(name: str, scores: pl.DataFrame) -> str:
     chance = f"chance alone reaches {low:+z.2f} to {high:+z.2f}"
     if scores.height == 1:
         return f"mean {title} is {means[0]:+z.2f}, and {chance}"
-    outside = scores.filter((pl.col("mean") < pl.col("null_low")) | (pl.col("mean") > pl.col("null_high"))).height
-    lie = "lies" if outside == 1 else "lie"
-    where = f"is {means.min():+z.2f} to {means.max():+z.2f} in {scores.height} worlds, on average"
-    return f"mean {title} {where} {means.mean():+z.2f}; {chance}, and {outside} of them {lie} outside"
+    outside_count = scores.filter((pl.col("mean") < pl.col("null_low")) | (pl.col("mean") > pl.col("null_high"))).height
+    verb = "lies" if outside_count == 1 else "lie"
+    range_text = f"is {means.min():+z.2f} to {means.max():+z.2f} in {scores.height} worlds, on average"
+    return f"mean {title} {range_text} {means.mean():+z.2f}; {chance}, and {outside_count} of them {verb} outside"
 
 
 def _span(values: pl.Series) -> str:
     """The range of some numbers, with one decimal below ten."""
-    known = values.to_numpy().astype(np.float64)
-    low, high = (f"{value:.1f}" if value < 10 else f"{value:.0f}" for value in (known.min(), known.max()))
+    numbers = values.to_numpy().astype(np.float64)
+    low, high = (f"{value:.1f}" if value < 10 else f"{value:.0f}" for value in (numbers.min(), numbers.max()))
     return low if low == high else f"{low} to {high}"
 
 
@@ -93,10 +93,10 @@ def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
     if test["p"] > HINT:
         return f"selection is not shown ({chance}), and nothing speaks for it so far."
     # The effect of selection grows with time, that of drift with its square root; the same holds for sums over worlds.
-    times = (-normal_quantile(LEVEL / 2 / tests) / score) ** 2 / test["worlds"]
-    after = f"new worlds about {max(times, 1.1):.2g} times as long"
-    wait = "" if seconds is None else f" ({_minutes(max(times, 1.1) * seconds)} on this machine)"
-    return f"selection is not shown ({chance}). If the trend is real, {after}{wait} would show it."
+    length_factor = (-normal_quantile(LEVEL / 2 / tests) / score) ** 2 / test["worlds"]
+    longer_worlds = f"new worlds about {max(length_factor, 1.1):.2g} times as long"
+    duration = "" if seconds is None else f" ({_minutes(max(length_factor, 1.1) * seconds)} on this machine)"
+    return f"selection is not shown ({chance}). If the trend is real, {longer_worlds}{duration} would show it."
 
 
 def _seconds(worlds: Sequence[WorldRecord], runs: Sequence[Run]) -> float | None:
@@ -104,9 +104,9 @@ def _seconds(worlds: Sequence[WorldRecord], runs: Sequence[Run]) -> float | None
     if any(world.config.driven for world in worlds):
         return None  # no command can continue them
     names = {world.run for world in worlds}
-    times = [run.manifest.run_seconds for run in runs if run.path.name in names]
-    known = [time for time in times if time]
-    return sum(known) if known and len(known) == len(times) else None
+    durations = [run.manifest.run_seconds for run in runs if run.path.name in names]
+    recorded = [time for time in durations if time]
+    return sum(recorded) if recorded and len(recorded) == len(durations) else None
 
 
 def _minutes(seconds: float) -> str:
