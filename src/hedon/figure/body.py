@@ -28,12 +28,12 @@ Point = tuple[float, float]
 
 def draw_body(config: Config) -> Figure:
     """Draws the body with mouth, touch sectors and motors, and next to it the rays at full length."""
-    own = next(iter(config.species.values()))
+    species = next(iter(config.species.values()))
     with styled():
         figure = new_figure(8.6, 3.7)
         body, rays = figure.subplots(1, 2)
-        _draw_parts(body, config, own)
-        _draw_rays(rays, own)
+        _draw_parts(body, config, species)
+        _draw_rays(rays, species)
         for axes in (body, rays):
             axes.set_aspect("equal")
             axes.axis("off")
@@ -47,13 +47,13 @@ def ray_directions(own: SpeciesConfig) -> NDArray[np.float64]:
     return np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
 
 
-def _draw_parts(axes: Axes, config: Config, own: SpeciesConfig) -> None:
-    radius = own.body.radius
+def _draw_parts(axes: Axes, config: Config, species: SpeciesConfig) -> None:
+    radius = species.body.radius
     axes.add_patch(Circle((0, 0), radius, facecolor=_BODY, edgecolor=MUTED, linewidth=0.8))
-    _draw_touch(axes, own)
-    _draw_mouth(axes, own)
-    _draw_motors(axes, own)
-    _draw_food(axes, own, next(iter(config.food.values())), config.world.food_radius)
+    _draw_touch(axes, species)
+    _draw_mouth(axes, species)
+    _draw_motors(axes, species)
+    _draw_food(axes, species, next(iter(config.food.values())), config.world.food_radius)
     axes.annotate(
         "",
         (0, 1.75 * radius),
@@ -61,32 +61,32 @@ def _draw_parts(axes: Axes, config: Config, own: SpeciesConfig) -> None:
         arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.2, "shrinkA": 0},
     )
     axes.text(-0.08 * radius, 1.6 * radius, "heading", ha="right", fontsize=8)
-    mass = own.body.density * math.pi * radius**2
+    mass = species.body.density * math.pi * radius**2
     axes.set_title(f"the body: radius {radius:g} u, mass {mass:.3g}")
     axes.set(xlim=(-_VIEW * radius, _VIEW * radius), ylim=(-1.42 * radius, 1.8 * radius))
 
 
-def _draw_touch(axes: Axes, own: SpeciesConfig) -> None:
-    radius, count = own.body.radius, own.sensor.touch_sectors
+def _draw_touch(axes: Axes, species: SpeciesConfig) -> None:
+    radius, count = species.body.radius, species.sensor.touch_sectors
     edges = [[(0.0, 0.0), _at(radius, 360.0 * i / count)] for i in range(count)]
     axes.add_collection(LineCollection(edges, colors="white", linewidths=1.4))
     for sector in range(count):
-        place = _at(0.55 * radius, 360.0 * (sector + 0.5) / count)
-        axes.text(*place, str(sector), ha="center", va="center", color=BLUE, fontsize=11, fontweight="bold")
+        position = _at(0.55 * radius, 360.0 * (sector + 0.5) / count)
+        axes.text(*position, str(sector), ha="center", va="center", color=BLUE, fontsize=11, fontweight="bold")
     text = f"touch: {count} sectors of {360 / count:g}°"
     _point_out(axes, text, _at(0.9 * radius, 180.0 * (1 + 1 / count)), (0.0, -1.3 * radius))
 
 
-def _draw_mouth(axes: Axes, own: SpeciesConfig) -> None:
-    radius, spread, center = own.body.radius, own.sensor.mouth_spread, own.sensor.mouth_center
-    width, ahead = _MOUTH_WIDTH * radius, 90 + center
-    axes.add_patch(Wedge((0, 0), radius, ahead - spread, ahead + spread, width=width, facecolor=INK, zorder=3))
+def _draw_mouth(axes: Axes, species: SpeciesConfig) -> None:
+    radius, spread, center = species.body.radius, species.sensor.mouth_spread, species.sensor.mouth_center
+    width, heading = _MOUTH_WIDTH * radius, 90 + center
+    axes.add_patch(Wedge((0, 0), radius, heading - spread, heading + spread, width=width, facecolor=INK, zorder=3))
     span = f"{center - spread:g}° to {center + spread:g}°".replace("-", "\N{MINUS SIGN}") if center else f"±{spread:g}°"
     _point_out(axes, f"mouth: {span}", _at(radius, center + 0.75 * spread), (-1.5 * radius, 1.1 * radius))
 
 
-def _draw_motors(axes: Axes, own: SpeciesConfig) -> None:
-    radius, motor = own.body.radius, own.motor
+def _draw_motors(axes: Axes, species: SpeciesConfig) -> None:
+    radius, motor = species.body.radius, species.motor
     unit = _FORCE_LENGTH * radius / motor.max_force
     places = np.array([_at(radius, motor.angle), _at(radius, -motor.angle)])
     for x, y in places:
@@ -111,17 +111,17 @@ def _draw_motors(axes: Axes, own: SpeciesConfig) -> None:
         )
 
 
-def _draw_food(axes: Axes, own: SpeciesConfig, food: FoodConfig, size: float) -> None:
-    radius = own.body.radius
-    place = _at(radius + size, own.sensor.mouth_center - 0.7 * own.sensor.mouth_spread)
-    axes.add_patch(Circle(place, size, facecolor=food.color, edgecolor="white", linewidth=0.5))
+def _draw_food(axes: Axes, species: SpeciesConfig, food: FoodConfig, size: float) -> None:
+    radius = species.body.radius
+    position = _at(radius + size, species.sensor.mouth_center - 0.7 * species.sensor.mouth_spread)
+    axes.add_patch(Circle(position, size, facecolor=food.color, edgecolor="white", linewidth=0.5))
     text = f"food, radius {size:g} u:\nthe mouth eats\nwhat it touches"
-    axes.text(place[0] + 1.3 * size, place[1], text, va="center", fontsize=8)
+    axes.text(position[0] + 1.3 * size, position[1], text, va="center", fontsize=8)
 
 
-def _draw_rays(axes: Axes, own: SpeciesConfig) -> None:
-    radius, sensor = own.body.radius, own.sensor
-    directions = ray_directions(own)
+def _draw_rays(axes: Axes, species: SpeciesConfig) -> None:
+    radius, sensor = species.body.radius, species.sensor
+    directions = ray_directions(species)
     reach = radius + sensor.ray_length
     segments = np.stack([radius * directions, reach * directions], axis=1)
     axes.add_collection(LineCollection(list(segments), colors=BLUE, linewidths=0.9))
@@ -141,10 +141,10 @@ def _draw_rays(axes: Axes, own: SpeciesConfig) -> None:
     axes.text(left + _SCALE + 0.02 * reach, low, f"{_SCALE:g} u", color=MUTED, va="center", fontsize=8)
 
 
-def _point_out(axes: Axes, text: str, place: Point, label: Point) -> None:
+def _point_out(axes: Axes, text: str, position: Point, label: Point) -> None:
     """Writes a label with a line to the part that it names."""
     arrow = {"arrowstyle": "-", "color": MUTED, "linewidth": 0.8}
-    axes.annotate(text, place, xytext=label, fontsize=8, ha="center", va="center", arrowprops=arrow)
+    axes.annotate(text, position, xytext=label, fontsize=8, ha="center", va="center", arrowprops=arrow)
 
 
 def _at(distance: float, degree: float) -> Point:

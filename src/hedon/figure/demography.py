@@ -55,14 +55,16 @@ def draw_reproduction(axes: Axes, own: SpeciesConfig) -> Line2D:
     energy = _energies(own)
     r0 = reproduction_number(mean_hazard(own), birth_of(own), energy)
     axes.plot(energy, np.where(np.isfinite(r0), r0, np.nan), color=BLUE, linewidth=2.0)
-    one = axes.axhline(1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="R0 = 1: a lineage keeps its size")
+    reference_line = axes.axhline(
+        1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="R0 = 1: a lineage keeps its size"
+    )
     axes.set_title("children tried in a life, R0")
     _set_axes(axes, energy)
-    return one
+    return reference_line
 
 
-def _energies(own: SpeciesConfig) -> NDArray[np.float64]:
-    return np.concatenate([np.linspace(0, 1, 40), np.geomspace(1, max(own.energy.capacity, 2.0), 160)[1:]])
+def _energies(species: SpeciesConfig) -> NDArray[np.float64]:
+    return np.concatenate([np.linspace(0, 1, 40), np.geomspace(1, max(species.energy.capacity, 2.0), 160)[1:]])
 
 
 def _set_axes(axes: Axes, energy: NDArray[np.float64]) -> None:
@@ -79,8 +81,8 @@ def _quartiles(populations: list[pl.DataFrame]) -> tuple[float, float, float] | 
     """Quartiles of energy, averaged over the last tenth of the worlds."""
     names = ("energy_q25", "energy_median", "energy_q75")
     tails = [run_tail(rows).select(pl.col(*names).cast(pl.Float64).mean()) for rows in populations if rows.height]
-    known = pl.concat(tails).drop_nulls() if tails else None
-    if known is None or known.is_empty():
+    recorded = pl.concat(tails).drop_nulls() if tails else None
+    if recorded is None or recorded.is_empty():
         return None
-    low, median, high = known.mean().row(0)
+    low, median, high = recorded.mean().row(0)
     return low, median, high

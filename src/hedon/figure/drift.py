@@ -27,8 +27,8 @@ def draw_scores(
         means: For each genome column "effect", "low" and "high" over all worlds; bounds may be None.
     """
     seeds = sorted({seed for by_seed in points.values() for seed in by_seed})
-    every = [score for by_seed in points.values() for scores in by_seed.values() for score in scores.values()]
-    reach = 1.1 * max([_LEAST, *map(abs, every)])
+    all_scores = [score for by_seed in points.values() for scores in by_seed.values() for score in scores.values()]
+    reach = 1.1 * max([_LEAST, *map(abs, all_scores)])
     rows = [*points, "all"]
     with styled():
         figure = new_figure(9.0, 1.2 + 0.3 * len(rows))

@@ -51,17 +51,17 @@ class Film:
             self._figure = Figure(figsize=(self.width / DOTS_PER_INCH, 1), dpi=DOTS_PER_INCH)
             self._figure.set_facecolor("white")
             self._canvas = FigureCanvasAgg(self._figure)
-            words = self._words(snapshot)
-            self._caption = self._figure.text(MARGIN, 1, words, va="center", fontsize=8, color=MUTED)
-            legend, head = self._legend(snapshot)
-            self.height = world_height + head
+            caption = self._words(snapshot)
+            self._caption = self._figure.text(MARGIN, 1, caption, va="center", fontsize=8, color=MUTED)
+            legend, header_height = self._legend(snapshot)
+            self.height = world_height + header_height
             self._figure.set_size_inches(self.width / DOTS_PER_INCH, self.height / DOTS_PER_INCH)
             self._caption.set_y(1 - CAPTION / 2 / self.height)
-            beside = head == CAPTION
-            legend.set_loc("center right" if beside else "center left")
-            below = CAPTION / 2 if beside else (CAPTION + head) / 2
-            legend.set_bbox_to_anchor((int(beside), 1 - below / self.height))
-            self._axes = self._figure.add_axes((0, 0, 1, 1 - head / self.height))
+            is_beside = header_height == CAPTION
+            legend.set_loc("center right" if is_beside else "center left")
+            offset = CAPTION / 2 if is_beside else (CAPTION + header_height) / 2
+            legend.set_bbox_to_anchor((int(is_beside), 1 - offset / self.height))
+            self._axes = self._figure.add_axes((0, 0, 1, 1 - header_height / self.height))
             self._axes.axis("off")
             draw_walls(self._axes, snapshot.walls)
             draw_obstacles(self._axes, snapshot.obstacles)
@@ -88,10 +88,10 @@ class Film:
             self._canvas.draw()
         return self._canvas.buffer_rgba()
 
-    def _look_at(self, place: np.ndarray) -> None:
+    def _look_at(self, position: np.ndarray) -> None:
         """Centers the view on a place, as far as the arena allows."""
         half = self._span / 2 - self._rim
-        self._middle = np.clip(place, self._low + half, self._high - half)
+        self._middle = np.clip(position, self._low + half, self._high - half)
 
     def _words(self, snapshot: Snapshot) -> str:
         agent = "" if self._follow is None else f", agent {self._follow}"
@@ -99,19 +99,19 @@ class Film:
 
     def _legend(self, snapshot: Snapshot) -> tuple[Legend, int]:
         """The legend, not yet placed, and the height of everything above the world [pixel]."""
-        dot = {"marker": "o", "linestyle": "", "markersize": 5}
-        marks = [Line2D([], [], color=self._colors[kind], label=kind, **dot) for kind in snapshot.food_kinds]
+        marker_style = {"marker": "o", "linestyle": "", "markersize": 5}
+        marks = [Line2D([], [], color=self._colors[kind], label=kind, **marker_style) for kind in snapshot.food_kinds]
         if len(snapshot.species_names) > 1:
-            ring = {**dot, "markerfacecolor": "none", "markeredgewidth": 1.8}
+            ring = {**marker_style, "markerfacecolor": "none", "markeredgewidth": 1.8}
             marks += [
                 Line2D([], [], markeredgecolor=species_color(i), label=name, **ring)
                 for i, name in enumerate(snapshot.species_names)
             ]
         legend = wrapped_legend(self._figure, marks, len(marks), fontsize=8, borderaxespad=0.4)
         legend.set_in_layout(False)
-        size, words = legend.get_window_extent(), GROWTH * self._caption.get_window_extent().width
-        room = (1 - MARGIN) * self.width
-        if size.height <= CAPTION and words + size.width <= room:
+        size, caption_width = legend.get_window_extent(), GROWTH * self._caption.get_window_extent().width
+        available_width = (1 - MARGIN) * self.width
+        if size.height <= CAPTION and caption_width + size.width <= available_width:
             return legend, CAPTION
-        self._caption.set_fontsize(8 * min(room / words, 1))
+        self._caption.set_fontsize(8 * min(available_width / caption_width, 1))
         return legend, CAPTION + int(size.height) // 2 * 2

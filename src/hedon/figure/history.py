@@ -67,8 +67,8 @@ def draw_histories(
         colors: Color of each food kind.
     """
     tints = weight_colors(reward_names, colors)
-    shown = {name: (weight_title(name), tints[name]) for name in reward_names}
-    columns = len(shown) + bool(neutral_names)
+    weight_styles = {name: (weight_title(name), tints[name]) for name in reward_names}
+    columns = len(weight_styles) + bool(neutral_names)
     end = max(last_step(setting.population) for setting in settings)
     with styled():
         width = min(2.7 * columns + 0.5, _WIDEST)
@@ -77,8 +77,8 @@ def draw_histories(
         grid = figure.subplots(len(settings), columns, sharex=True, sharey=True, squeeze=False)
         reach, size = 0.0, 10.0 if columns <= _ROOMY else 8.0
         for setting, panels in zip(settings, grid, strict=True):
-            rows = history(setting.population, (), [*shown, *neutral_names], _POINTS, end)
-            for axes, (name, (title, color)) in zip(panels, shown.items(), strict=False):
+            rows = history(setting.population, (), [*weight_styles, *neutral_names], _POINTS, end)
+            for axes, (name, (title, color)) in zip(panels, weight_styles.items(), strict=False):
                 draw_zero_line(axes)
                 reach = max(reach, _draw_band(axes, setting.drift.get(name), rows, end))
                 draw_traces(axes, rows, f"{name}_mean", color, extinct=setting.extinct, end=end)
@@ -97,7 +97,7 @@ def draw_histories(
             panels[0].set_ylabel("mean weight of the living" if len(settings) == 1 else "mean weight")
             if rows.is_empty():
                 say_empty(panels[0], "nothing recorded yet")
-            values = rows.select(f"{name}_mean" for name in shown).to_numpy().astype(np.float64)
+            values = rows.select(f"{name}_mean" for name in weight_styles).to_numpy().astype(np.float64)
             reach = max(reach, np.nanmax(np.abs(values)) if np.isfinite(values).any() else 0.0)
         reach = max(1.05 * reach, _MIN_HALF_RANGE)
         grid[0, 0].set_ylim(-reach, reach)
@@ -127,9 +127,9 @@ def _say_setting(axes: Axes, setting: HistoryRow) -> None:
     """Writes the title and remark of a row above it, higher than the titles of its panels."""
     if not setting.title:
         return
-    lift = 24 if axes.get_title("left") else 6
-    at = {"xy": (0, 1), "xycoords": "axes fraction", "textcoords": "offset points", "va": "bottom"}
-    name = axes.annotate(setting.title, xytext=(0, lift), fontsize=10.0, fontweight="bold", **at)
+    offset = 24 if axes.get_title("left") else 6
+    placement = {"xy": (0, 1), "xycoords": "axes fraction", "textcoords": "offset points", "va": "bottom"}
+    name = axes.annotate(setting.title, xytext=(0, offset), fontsize=10.0, fontweight="bold", **placement)
     remark = axes.annotate(
         setting.remark,
         xy=(1, 0),

@@ -33,29 +33,29 @@ def draw_numbers(histories: Mapping[str, pl.DataFrame]) -> Figure:
     Args:
         histories: Histories of two species by name, with the columns world, bin, step and alive.
     """
-    (first, one), (second, other) = histories.items()
-    every = pl.concat([one, other])
+    (first_name, first_history), (second_name, second_history) = histories.items()
+    combined = pl.concat([first_history, second_history])
     with styled():
         figure = new_figure(8.6, 3.4)
-        course, phase = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
+        time_axes, phase_axes = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
         for (name, rows), color in zip(histories.items(), SEED_COLORS, strict=False):
-            draw_traces(course, rows, "alive", color, name, end=last_step(every))
-        course.set_title("alive")
-        course.set_ylim(bottom=0)
-        draw_time_axis(course, every)
-        legend_above(course)
-        both = one.join(other, on=["world", "bin"], suffix="_other").sort("world", "bin")
-        for index, world in enumerate(both.partition_by("world")):
+            draw_traces(time_axes, rows, "alive", color, name, end=last_step(combined))
+        time_axes.set_title("alive")
+        time_axes.set_ylim(bottom=0)
+        draw_time_axis(time_axes, combined)
+        legend_above(time_axes)
+        joined = first_history.join(second_history, on=["world", "bin"], suffix="_other").sort("world", "bin")
+        for index, world in enumerate(joined.partition_by("world")):
             x, y = world["alive"].to_numpy(), world["alive_other"].to_numpy()
-            phase.plot(x, y, color=seed_color(index), linewidth=0.9, alpha=0.7)
-            phase.plot(x[-1:], y[-1:], "o", color=seed_color(index), markersize=4)
-        phase.set_title("one against the other")
-        phase.set_xlabel(f"{first} alive")
-        phase.set_ylabel(f"{second} alive")
-        phase.set_xlim(left=0)
-        phase.set_ylim(bottom=0)
-        if both.is_empty():
-            say_empty(phase, "nothing recorded yet")
+            phase_axes.plot(x, y, color=seed_color(index), linewidth=0.9, alpha=0.7)
+            phase_axes.plot(x[-1:], y[-1:], "o", color=seed_color(index), markersize=4)
+        phase_axes.set_title("one against the other")
+        phase_axes.set_xlabel(f"{first_name} alive")
+        phase_axes.set_ylabel(f"{second_name} alive")
+        phase_axes.set_xlim(left=0)
+        phase_axes.set_ylim(bottom=0)
+        if joined.is_empty():
+            say_empty(phase_axes, "nothing recorded yet")
     return figure
 
 

@@ -56,8 +56,8 @@ def draw_birth(own: SpeciesConfig) -> Figure:
         chance.plot(energy, 1e3 * birth_rate(birth_of(own), energy), color=BLUE, linewidth=2.0)
         chance.set(xlim=(0, energy[-1]), ylim=(0, 1.1e3 * own.birth.kappa), xlabel="energy")
         chance.set_title("chance of trying a birth [1/1000 steps]")
-        one = draw_reproduction(children, own)
-        figure.legend(handles=[one], loc="outside lower right")
+        reference_line = draw_reproduction(children, own)
+        figure.legend(handles=[reference_line], loc="outside lower right")
         children.plot(0, none, marker="o", markersize=6, color=VERMILION, clip_on=False, zorder=5)
         children.annotate(
             f"without energy {none:.2f}",

@@ -54,12 +54,12 @@ def draw_lineages(lines: pl.DataFrame, titles: Mapping[str, str], colors: Mappin
 
 def _draw_weight(axes: Axes, rows: pl.DataFrame, unit: float, color: str) -> None:
     draw_zero_line(axes)
-    for column, look in (
+    for column, style in (
         ("living_mean", {"color": MUTED, "linewidth": 1.0}),
         ("line_mean", {"color": color, "linewidth": 2.0}),
     ):
         x, mean, low, high = _over_worlds(rows, column)
-        axes.plot(x / unit, mean, **look)
+        axes.plot(x / unit, mean, **style)
         if column == "line_mean":
             axes.fill_between(x / unit, low, high, color=color, alpha=0.13, linewidth=0)
 

@@ -18,15 +18,15 @@ def wall_outline(walls: np.ndarray) -> np.ndarray | None:
     """
     if len(walls) == 0:
         return None
-    ends = walls.reshape(-1, 2, 2).astype(np.float64)
-    free = np.ones(len(ends), bool)
-    free[0] = False
-    corners = [ends[0, 0], ends[0, 1]]
+    endpoints = walls.reshape(-1, 2, 2).astype(np.float64)
+    unused = np.ones(len(endpoints), bool)
+    unused[0] = False
+    corners = [endpoints[0, 0], endpoints[0, 1]]
     while np.abs(corners[-1] - corners[0]).max() > _NEAR:
-        close = (np.abs(ends - corners[-1]).max(axis=2) < _NEAR) & free[:, None]  # (walls, two ends)
+        close = (np.abs(endpoints - corners[-1]).max(axis=2) < _NEAR) & unused[:, None]  # (walls, two ends)
         if not close.any():
             return None
         wall, end = np.argwhere(close)[0]
-        free[wall] = False
-        corners.append(ends[wall, 1 - end])
+        unused[wall] = False
+        corners.append(endpoints[wall, 1 - end])
     return np.array(corners[:-1])

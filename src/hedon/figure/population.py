@@ -28,25 +28,25 @@ def draw_population(population: pl.DataFrame, meals: Sequence[str], colors: Mapp
         }
         _draw(panels[0, 2], rows, "failed births per 1000 steps", failed)
         _draw(panels[1, 0], rows, "mean energy of the living", {"energy_mean": ("", INK)})
-        eaten = {f"eaten_{meal}": (meal if len(meals) > 1 else "", colors[meal]) for meal in meals}
-        what = "foods" if all(f"food_{meal}" in population.columns for meal in meals) else "meals"
-        _draw(panels[1, 1], rows, f"{what} eaten per 1000 steps of life", eaten)
+        meal_styles = {f"eaten_{meal}": (meal if len(meals) > 1 else "", colors[meal]) for meal in meals}
+        subject = "foods" if all(f"food_{meal}" in population.columns for meal in meals) else "meals"
+        _draw(panels[1, 1], rows, f"{subject} eaten per 1000 steps of life", meal_styles)
         _draw(panels[1, 2], rows, "mean generation", {"generation_mean": ("", INK)})
         for axes in panels[1]:
             draw_time_axis(axes, rows)
     return figure
 
 
-def _draw(axes: Axes, rows: pl.DataFrame, title: str, shown: Mapping[str, tuple[str, str]]) -> None:
+def _draw(axes: Axes, rows: pl.DataFrame, title: str, styles: Mapping[str, tuple[str, str]]) -> None:
     axes.set_title(title, fontsize=9)
-    for column, (label, color) in shown.items():
-        draw_traces(axes, rows, column, color, label or None, thin=len(shown) == 1)
-    axes.set_ylim(bottom=0, top=None if _largest(rows, shown) > 0 else 1)
-    if any(label for label, _ in shown.values()):
+    for column, (label, color) in styles.items():
+        draw_traces(axes, rows, column, color, label or None, thin=len(styles) == 1)
+    axes.set_ylim(bottom=0, top=None if _largest(rows, styles) > 0 else 1)
+    if any(label for label, _ in styles.values()):
         legend_above(axes)
     if rows.is_empty():
         say_empty(axes, "nothing recorded yet")
 
 
-def _largest(rows: pl.DataFrame, shown: Mapping[str, object]) -> float:
-    return max((float(rows[column].drop_nulls().to_numpy().max(initial=0.0)) for column in shown), default=0.0)
+def _largest(rows: pl.DataFrame, columns: Mapping[str, object]) -> float:
+    return max((float(rows[column].drop_nulls().to_numpy().max(initial=0.0)) for column in columns), default=0.0)

@@ -22,9 +22,9 @@ def draw_regimes(regimes: pl.DataFrame) -> Figure:
         axes.grid(visible=False)
         unit, name = step_unit(float(regimes["step"].to_numpy().max()))
         for row, seed in enumerate(seeds):
-            mine = regimes.filter(pl.col("seed") == seed)
+            world_regimes = regimes.filter(pl.col("seed") == seed)
             # Adjacent intervals in the same regime become one bar, since seams between bars would be visible.
-            parts = mine.group_by(pl.col("regime").rle_id().alias("part"), maintain_order=True)
+            parts = world_regimes.group_by(pl.col("regime").rle_id().alias("part"), maintain_order=True)
             merged = parts.agg(pl.col("regime").first(), pl.col("step").max(), pl.col("steps").sum())
             spans = [
                 ((step - steps) / unit, steps / unit) for step, steps in merged.select("step", "steps").iter_rows()
@@ -38,7 +38,7 @@ def draw_regimes(regimes: pl.DataFrame) -> Figure:
         for side in ("left", "bottom"):
             axes.spines[side].set_visible(False)
         axes.set_xlabel(f"time [{name}]")
-        there = set(regimes["regime"].to_list())
-        handles = [Patch(color=REGIME_COLORS[r], label=r) for r in REGIMES if r in there]
+        present_regimes = set(regimes["regime"].to_list())
+        handles = [Patch(color=REGIME_COLORS[r], label=r) for r in REGIMES if r in present_regimes]
         figure.legend(handles=handles, loc="outside upper left", ncols=len(handles), columnspacing=1.4)
     return figure

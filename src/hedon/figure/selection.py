@@ -29,17 +29,17 @@ def draw_selection(
     with styled():
         figure = new_figure(2.35 * len(titles) + 1.2, 4.4)
         panels = figure.subplots(len(_ROWS), len(titles), sharex=True, sharey=True, squeeze=False)
-        known = worlds.filter(pl.col("standard_gradient").is_not_null())
+        measured = worlds.filter(pl.col("standard_gradient").is_not_null())
         unit, name = step_unit(float(worlds["to_step"].to_numpy().max(initial=0.0)))
-        few = worlds["seed"].n_unique() < FOR_INTERVAL or windows.is_empty()
+        too_few = worlds["seed"].n_unique() < FOR_INTERVAL or windows.is_empty()
         for i, (fitness, label) in enumerate(_ROWS.items()):
             for axes, (weight, title) in zip(panels[i], titles.items(), strict=True):
                 draw_zero_line(axes)
-                this = (pl.col("fitness") == fitness) & (pl.col("weight") == weight)
-                if few:
-                    _draw_worlds(axes, known.filter(this), unit, colors[weight])
+                in_panel = (pl.col("fitness") == fitness) & (pl.col("weight") == weight)
+                if too_few:
+                    _draw_worlds(axes, measured.filter(in_panel), unit, colors[weight])
                 else:
-                    _draw_means(axes, windows.filter(this), known.filter(this), unit, colors[weight])
+                    _draw_means(axes, windows.filter(in_panel), measured.filter(in_panel), unit, colors[weight])
                 if i == 0:
                     axes.set_title(title, color=colors[weight])
                 else:
@@ -48,7 +48,7 @@ def draw_selection(
         low, high = panels[0, 0].get_ylim()
         panels[0, 0].set_ylim(min(low, -_LEAST_RANGE), max(high, _LEAST_RANGE))
         panels[0, 0].set_xlim(left=0)
-        if known.is_empty():
+        if measured.is_empty():
             say_empty(panels[0, 0], "too few agents")
     return figure
 
@@ -66,11 +66,11 @@ def _draw_worlds(axes: Axes, worlds: pl.DataFrame, unit: float, color: str) -> N
     for k, rows in enumerate(worlds.sort("seed", "window").partition_by("seed")):
         steps = rows["to_step"].to_numpy()
         shift = 0.15 * k * (steps[0] if len(steps) == 1 else np.diff(steps).min())
-        whole = rows["complete"].to_numpy() >= COMPLETE
-        _points(axes, (steps - shift) / unit, rows["standard_gradient"].to_numpy(), color, whole)
+        is_complete = rows["complete"].to_numpy() >= COMPLETE
+        _points(axes, (steps - shift) / unit, rows["standard_gradient"].to_numpy(), color, is_complete)
 
 
-def _points(axes: Axes, x: np.ndarray, values: np.ndarray, color: str, whole: np.ndarray) -> None:
+def _points(axes: Axes, x: np.ndarray, values: np.ndarray, color: str, is_complete: np.ndarray) -> None:
     """Points, hollow for cohorts with agents that are still alive."""
-    fill = [color if known else "white" for known in whole]
-    axes.scatter(x, values, s=18, c=fill, edgecolors=color, linewidths=1.0, zorder=3)
+    face_colors = [color if complete else "white" for complete in is_complete]
+    axes.scatter(x, values, s=18, c=face_colors, edgecolors=color, linewidths=1.0, zorder=3)

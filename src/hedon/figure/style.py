@@ -112,9 +112,9 @@ def save_figure(figure: Figure, path: Path | str, width: float | None = None) ->
     path = Path(path)
     form = path.suffix.removeprefix(".")
     if form not in FORMATS:
-        near = nearest(form, FORMATS)
-        hint = f"; did you mean .{near}?" if near else ""
-        raise ArgumentError(f"path = {path}: must end in {', '.join(f'.{each}' for each in FORMATS)}{hint}")
+        suggestion = nearest(form, FORMATS)
+        hint = f"; did you mean .{suggestion}?" if suggestion else ""
+        raise ArgumentError(f"path = {path}: must end in {', '.join(f'.{suffix}' for suffix in FORMATS)}{hint}")
     if width is not None:
         if not (isinstance(width, int | float) and 0 < width < math.inf):
             raise ArgumentError(f"width = {width!r}: must be a number above 0, in inches")
@@ -191,8 +191,8 @@ def head(axes: Axes, title: str, remark: str = "") -> None:
     if title:
         axes.set_title(title, pad=8.0 + 11.0 * lines)
     if remark:
-        at = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, 6), "textcoords": "offset points"}
-        axes.annotate(remark, **at, va="bottom", color=MUTED, fontsize=8.0, linespacing=1.15)
+        placement = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, 6), "textcoords": "offset points"}
+        axes.annotate(remark, **placement, va="bottom", color=MUTED, fontsize=8.0, linespacing=1.15)
 
 
 def legend_above(axes: Axes, columns: int = 2) -> None:
@@ -218,8 +218,8 @@ def wrapped_legend(figure: Figure, handles: Sequence[Artist], columns: int, **op
 def number_log_axis(axis: Axis) -> None:
     """Writes plain numbers on a logarithmic axis whose limits are set, a few per decade if there is room."""
     low, high = axis.get_view_interval()
-    shown = next((numbers for ratio, numbers in _LOG_NUMBERS.items() if high < ratio * low), (1,))
-    axis.set_major_locator(LogLocator(subs=shown))
+    digits = next((numbers for ratio, numbers in _LOG_NUMBERS.items() if high < ratio * low), (1,))
+    axis.set_major_locator(LogLocator(subs=digits))
     axis.set_major_formatter("{x:,.10g}")
     axis.set_minor_formatter(NullFormatter())
 

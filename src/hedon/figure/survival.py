@@ -23,8 +23,8 @@ def draw_survival(points: pl.DataFrame, lifetimes: pl.DataFrame) -> Figure:
     with styled():
         figure = new_figure(8.6, 3.5)
         linear, logarithmic = figure.subplots(1, 2, sharex=True)
-        shown = points.filter(pl.col("share") >= _SHOWN_SHARE)
-        end = float(shown["age"].to_numpy().max())
+        visible = points.filter(pl.col("share") >= _SHOWN_SHARE)
+        end = float(visible["age"].to_numpy().max())
         unit, name = step_unit(end)
         seeds = points["seed"].unique(maintain_order=True).to_list()
         for i, seed in enumerate(seeds):
@@ -40,8 +40,8 @@ def draw_survival(points: pl.DataFrame, lifetimes: pl.DataFrame) -> Figure:
             for axes in (linear, logarithmic):
                 axes.plot(age / unit, np.exp(-age / means.mean()), color=INK, linewidth=1.0, linestyle=(0, (4, 3)))
         logarithmic.set_yscale("log")
-        least = max(_SHOWN_SHARE, float(shown.select(pl.min_horizontal("share", "low").min()).item()))
-        logarithmic.set_ylim(least ** (1 + _MARGIN), least**-_MARGIN)
+        lowest = max(_SHOWN_SHARE, float(visible.select(pl.min_horizontal("share", "low").min()).item()))
+        logarithmic.set_ylim(lowest ** (1 + _MARGIN), lowest**-_MARGIN)
         number_log_axis(logarithmic.yaxis)
         linear.set(xlim=(0, end / unit), ylim=(0, 1.02), ylabel="share that lives on")
         linear.set_title("survival")

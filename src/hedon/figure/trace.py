@@ -40,13 +40,13 @@ def draw_traces(
     """
     unit, _ = step_unit(max(last_step(history), end))
     worlds = history.partition_by("world")
-    gone = _ended_early(history) if extinct is None else extinct
+    extinct_worlds = _ended_early(history) if extinct is None else extinct
     for world in worlds if thin else []:
         rows = world.filter(pl.col(column).is_not_null())
         x, y = rows["step"].to_numpy() / unit, rows[column].to_numpy()
         if len(worlds) > 1:
             axes.plot(x, y, color=color, linewidth=0.8, alpha=0.35)
-        if len(x) and world["world"][0] in gone:
+        if len(x) and world["world"][0] in extinct_worlds:
             axes.plot(x[-1], y[-1], marker="x", markersize=5, color=color, alpha=0.8)
     x, mean, low, high = over_worlds(history, column)
     if len(worlds) >= FOR_INTERVAL:
@@ -72,8 +72,8 @@ def over_worlds(history: pl.DataFrame, column: str) -> tuple[np.ndarray, np.ndar
         (bins,).
     """
     rows = []
-    known = history.filter(pl.col(column).is_not_null())
-    for bin_rows in known.partition_by("bin"):
+    recorded = history.filter(pl.col(column).is_not_null())
+    for bin_rows in recorded.partition_by("bin"):
         interval = mean_interval(bin_rows[column])
         low, high = (interval.low, interval.high) if interval.worlds >= FOR_INTERVAL else (None, None)
         rows.append([bin_rows["step"].to_numpy().max(), interval.mean, low, high])
@@ -107,5 +107,5 @@ def last_step(history: pl.DataFrame) -> float:
 
 def _ended_early(history: pl.DataFrame) -> set[int]:
     """The worlds whose records end before those of others."""
-    ends = history.group_by("world").agg(pl.col("bin").max())
-    return set(ends.filter(pl.col("bin") < pl.col("bin").max())["world"])
+    last_bins = history.group_by("world").agg(pl.col("bin").max())
+    return set(last_bins.filter(pl.col("bin") < pl.col("bin").max())["world"])

@@ -43,56 +43,56 @@ def draw_tree(tree: Genealogy, weight: NDArray[np.float64], name: str, now: int)
     if not len(alive):
         return draw_message("nobody lives at the end")
     tips = alive[np.unique(np.linspace(0, len(alive) - 1, min(len(alive), MOST)).round().astype(int))]
-    kept = np.flatnonzero(ancestry(tree, tips))
-    place, until = _layout(tree, kept, tips, now)
-    reach = max(float(np.quantile(np.abs(weight[kept]), _SHARE)), 1e-6)
+    members = np.flatnonzero(ancestry(tree, tips))
+    heights, line_ends = _layout(tree, members, tips, now)
+    reach = max(float(np.quantile(np.abs(weight[members]), _SHARE)), 1e-6)
     unit, unit_name = step_unit(now)
     with styled():
         figure = new_figure(8.6, min(2.0 + 0.02 * len(tips), 7.0))
         axes = figure.subplots()
-        lives = [[(tree.birth[i] / unit, place[i]), (until[i] / unit, place[i])] for i in kept]
-        heirs = [i for i in kept if tree.parent[i] >= 0]
-        births = [[(tree.birth[i] / unit, place[i]), (tree.birth[i] / unit, place[tree.parent[i]])] for i in heirs]
-        for lines, owners, width in ((births, heirs, 0.5), (lives, kept, 1.0)):
-            drawn = LineCollection(lines, cmap=_COLORS, linewidths=width)
-            drawn.set_array(weight[owners])
-            drawn.set_clim(-reach, reach)
-            axes.add_collection(drawn)
+        life_lines = [[(tree.birth[i] / unit, heights[i]), (line_ends[i] / unit, heights[i])] for i in members]
+        heirs = [i for i in members if tree.parent[i] >= 0]
+        births = [[(tree.birth[i] / unit, heights[i]), (tree.birth[i] / unit, heights[tree.parent[i]])] for i in heirs]
+        for lines, owners, width in ((births, heirs, 0.5), (life_lines, members, 1.0)):
+            collection = LineCollection(lines, cmap=_COLORS, linewidths=width)
+            collection.set_array(weight[owners])
+            collection.set_clim(-reach, reach)
+            axes.add_collection(collection)
         axes.set_xlim(0, now / unit)
         axes.set_ylim(-1, len(tips))
         axes.set_yticks([])
         axes.grid(visible=False)
         axes.set_xlabel(f"time [{unit_name}]")
-        shown = f"{len(tips)} of {len(alive)}" if len(tips) < len(alive) else f"all {len(alive)}"
-        axes.set_title(f"{shown} who live, and their ancestors")
-        figure.colorbar(drawn, ax=axes, label=weight_title(name), extend="both", shrink=0.8)
+        tip_count = f"{len(tips)} of {len(alive)}" if len(tips) < len(alive) else f"all {len(alive)}"
+        axes.set_title(f"{tip_count} who live, and their ancestors")
+        figure.colorbar(collection, ax=axes, label=weight_title(name), extend="both", shrink=0.8)
     return figure
 
 
 def _layout(
-    tree: Genealogy, kept: NDArray[np.int64], tips: NDArray[np.int64], now: int
+    tree: Genealogy, members: NDArray[np.int64], tips: NDArray[np.int64], now: int
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The height of each kept agent's line and the step at which it ends, each (agents,)."""
+    """The height of each member's line and the step at which it ends, each (agents,)."""
     young: dict[int, list[int]] = {}
-    until = np.where(tree.death == ALIVE, now, tree.birth)
-    for i in kept.tolist():
+    line_ends = np.where(tree.death == ALIVE, now, tree.birth)
+    for i in members.tolist():
         if (parent := int(tree.parent[i])) >= 0:
             young.setdefault(parent, []).append(i)
-            until[parent] = max(until[parent], tree.birth[i])
+            line_ends[parent] = max(line_ends[parent], tree.birth[i])
     is_tip = np.zeros(tree.size, bool)
     is_tip[tips] = True
-    until[kept] = np.where(is_tip[kept], now, until[kept])
-    place = np.full(tree.size, np.nan)
+    line_ends[members] = np.where(is_tip[members], now, line_ends[members])
+    heights = np.full(tree.size, np.nan)
     height = 0
-    for root in [i for i in kept.tolist() if tree.parent[i] < 0]:
+    for root in [i for i in members.tolist() if tree.parent[i] < 0]:
         stack = [root]
         while stack:  # from the bottom up: the latest child is drawn nearest to its parent
             agent = stack.pop()
             if is_tip[agent]:
-                place[agent] = height
+                heights[agent] = height
                 height += 1
             stack += young.get(agent, [])
-    for i in kept[::-1].tolist():  # children are listed after their parents
+    for i in members[::-1].tolist():  # children are listed after their parents
         if not is_tip[i]:
-            place[i] = min(place[child] for child in young[i])  # its line ends where that of its last child starts
-    return place, until
+            heights[i] = min(heights[child] for child in young[i])  # its line ends where that of its last child starts
+    return heights, line_ends

@@ -42,8 +42,8 @@ def draw_walks(law: MutationLaw, births: int, rng: np.random.Generator) -> Figur
             _draw_lines(walk, genes[: length + 1], examples[: length + 1], colors)
             _draw_share(share, genes[length], law, length)
             walk.set_ylim(-1.03 * law.limit, 1.03 * law.limit)
-        kept = ", two of a color from one world and its table" if law.tabulated else ""
-        panels[0][0].set_title(f"{_EXAMPLES} lines of descent{kept}")
+        color_note = ", two of a color from one world and its table" if law.tabulated else ""
+        panels[0][0].set_title(f"{_EXAMPLES} lines of descent{color_note}")
         panels[-1][1].set_xlabel("lines per bin [%]")
         handles = [*panels[0][0].get_legend_handles_labels()[0], *panels[0][1].get_legend_handles_labels()[0]]
         figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), handlelength=1.8)
@@ -87,14 +87,14 @@ def _draw_ends(axes: Axes, ends: Genes, law: MutationLaw) -> None:
     for draw in (axes.axhline, axes.axvline):
         draw(0, color=PALE, linewidth=1.0, zorder=0.5)
     axes.scatter(x, y, s=4.0, color=MUTED, linewidths=0, alpha=0.3, rasterized=True, clip_on=False)
-    near = (1.0 - _CORNER) * law.limit
-    for right in (-1, 1):
-        for up in (-1, 1):
-            share = 100 * float(np.mean((right * x >= near) & (up * y >= near)))
+    corner = (1.0 - _CORNER) * law.limit
+    for x_sign in (-1, 1):
+        for y_sign in (-1, 1):
+            share = 100 * float(np.mean((x_sign * x >= corner) & (y_sign * y >= corner)))
             axes.annotate(
                 f"{share:.1f} %",
-                (right * near, up * near),
-                xytext=(-12 * right, -12 * up),
+                (x_sign * corner, y_sign * corner),
+                xytext=(-12 * x_sign, -12 * y_sign),
                 textcoords="offset points",
                 ha="center",
                 va="center",

@@ -152,13 +152,13 @@ def _scatter(figure: Figure, axes: Axes, group: WeightGroup, panel: tuple[str, s
     order = np.random.default_rng(0).permutation(rows.height)
     x, y = (rows[name].to_numpy()[order] for name in panel)
     size = float(np.clip(6e4 / max(rows.height, 1), 3.0, 14.0))
-    look = {"s": size, "linewidths": 0, "alpha": 0.45, "rasterized": True}
+    style = {"s": size, "linewidths": 0, "alpha": 0.45, "rasterized": True}
     if not by_birth or rows["birth_step"].n_unique() < 2:
-        axes.scatter(x, y, c=[seed_color(world) for world in rows["world"].to_numpy()[order]], **look)
+        axes.scatter(x, y, c=[seed_color(world) for world in rows["world"].to_numpy()[order]], **style)
     else:
         unit, unit_name = step_unit(float(rows["birth_step"].to_numpy().max()))
         births = rows["birth_step"].to_numpy()[order] / unit
-        points = axes.scatter(x, y, c=births, cmap="viridis", **look)
+        points = axes.scatter(x, y, c=births, cmap="viridis", **style)
         if panel == group.panels[0]:
             bar = figure.colorbar(points, ax=axes, location="bottom", shrink=0.7, aspect=40, pad=0.02)
             bar.set_label(f"born at [{unit_name}]")
@@ -177,13 +177,13 @@ def _edge_marks(axes: Axes, rows: pl.DataFrame, panel: tuple[str, str], reach: f
 def _marginal(axes: Axes, group: WeightGroup, name: str, reach: float, *, upright: bool = False) -> None:
     edges = np.linspace(-reach, reach, _BINS + 1)
     bins = {"bins": edges, "orientation": "horizontal" if upright else "vertical"}
-    values, drifted = group.agents[name].to_numpy(), group.drift.get(name)
+    values, drift_values = group.agents[name].to_numpy(), group.drift.get(name)
     if len(values):
-        filled = {"histtype": "stepfilled", "color": _DENSITY_COLOR, "linewidth": 0}
-        axes.hist(values, weights=np.full(len(values), 1 / len(values)), **filled, **bins)
-    if drifted is not None:
-        outlined = {"histtype": "step", "color": NEUTRAL_COLOR, "linewidth": 1.2}
-        axes.hist(drifted, weights=np.full(len(drifted), 1 / len(drifted)), **outlined, **bins)
+        fill_style = {"histtype": "stepfilled", "color": _DENSITY_COLOR, "linewidth": 0}
+        axes.hist(values, weights=np.full(len(values), 1 / len(values)), **fill_style, **bins)
+    if drift_values is not None:
+        outline_style = {"histtype": "step", "color": NEUTRAL_COLOR, "linewidth": 1.2}
+        axes.hist(drift_values, weights=np.full(len(drift_values), 1 / len(drift_values)), **outline_style, **bins)
     axes.axis("off")
 
 
@@ -191,27 +191,27 @@ def _legend(figure: Figure, groups: Sequence[WeightGroup], reach: float) -> None
     handles: list[Artist] = []
     worlds = sorted({world for group in groups for world in group.agents.select("world", "seed").unique().rows()})
     if 1 < len(worlds) <= _LEGEND_SEEDS:
-        dot = {"marker": "o", "linestyle": "", "markersize": 4.5}
-        handles += [Line2D([], [], color=seed_color(w), label=f"seed {seed}", **dot) for w, seed in worlds]
+        marker_style = {"marker": "o", "linestyle": "", "markersize": 4.5}
+        handles += [Line2D([], [], color=seed_color(w), label=f"seed {seed}", **marker_style) for w, seed in worlds]
     handles.append(Patch(color=_DENSITY_COLOR, label="all agents"))
     handles.append(_drift_handle(groups, reach))
-    beyond = sum(group.agents.filter(_is_beyond(group.weights, reach)).height for group in groups)
-    if beyond:
+    beyond_count = sum(group.agents.filter(_is_beyond(group.weights, reach)).height for group in groups)
+    if beyond_count:
         cross = {"marker": "x", "linestyle": "", "markersize": 3.5, "color": MUTED}
-        handles.append(Line2D([], [], label=f"{beyond:,} agents beyond", **cross))
-    narrow = 3 if 4 < len(handles) <= 6 else 4
-    columns = narrow if len(figure.axes) < 5 else len(handles)
+        handles.append(Line2D([], [], label=f"{beyond_count:,} agents beyond", **cross))
+    narrow_columns = 3 if 4 < len(handles) <= 6 else 4
+    columns = narrow_columns if len(figure.axes) < 5 else len(handles)
     figure.legend(handles=handles, loc="outside lower left", ncols=columns, columnspacing=1.0, handletextpad=0.3)
 
 
 def _drift_handle(groups: Sequence[WeightGroup], reach: float) -> Artist:
     """Legend entry for the outline of drift: its share beyond the axes, and the weights that have no outline."""
-    drifted = [group.drift[name] for group in groups for name in group.weights if name in group.drift]
-    absent = list(dict.fromkeys(name for group in groups for name in group.weights if name not in group.drift))
-    outside = float((np.abs(np.concatenate(drifted)) > reach).mean()) if drifted else 0.0
-    label = "drift alone" if outside < 0.01 else f"drift alone ({100 * outside:.0f} % beyond)"
-    if absent:
-        label = f"drift alone: not known of {', '.join(absent)}" if drifted else "drift alone: not known"
+    drift_values = [group.drift[name] for group in groups for name in group.weights if name in group.drift]
+    missing_names = list(dict.fromkeys(name for group in groups for name in group.weights if name not in group.drift))
+    outside_share = float((np.abs(np.concatenate(drift_values)) > reach).mean()) if drift_values else 0.0
+    label = "drift alone" if outside_share < 0.01 else f"drift alone ({100 * outside_share:.0f} % beyond)"
+    if missing_names:
+        label = f"drift alone: not known of {', '.join(missing_names)}" if drift_values else "drift alone: not known"
     return Patch(facecolor="none", edgecolor=NEUTRAL_COLOR, linewidth=1.2, label=label)
 
 

@@ -80,8 +80,8 @@ def ray_segments(snapshot: Snapshot, index: int) -> tuple[np.ndarray, np.ndarray
     Returns:
         Segments [u], shape (rays, 2, 2), and the type of object that each ray hits, shape (rays,); −1 for none.
     """
-    own = snapshot.species[index]
-    readings = snapshot.rays[index, : snapshot.ray_count[own]]
+    species_index = snapshot.species[index]
+    readings = snapshot.rays[index, : snapshot.ray_count[species_index]]
     spread = np.radians(snapshot.of_agents("ray_spread")[index])
     reach = snapshot.of_agents("ray_length")[index]
     angle = snapshot.angle[index] + np.linspace(-spread, spread, len(readings))
@@ -130,8 +130,8 @@ def draw_foods(axes: Axes, snapshot: Snapshot, colors: Mapping[str, str]) -> Non
     """
     places = np.stack([snapshot.food_x, snapshot.food_y], axis=-1)
     for i, kind in enumerate(snapshot.food_kinds):
-        mine = places[snapshot.food_kind == i]
-        _discs(axes, mine, snapshot.food_radius, facecolors=colors[kind], edgecolors="white", linewidths=0.5)
+        kind_places = places[snapshot.food_kind == i]
+        _discs(axes, kind_places, snapshot.food_radius, facecolors=colors[kind], edgecolors="white", linewidths=0.5)
 
 
 def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> EllipseCollection:
@@ -151,22 +151,22 @@ def draw_agents(axes: Axes, snapshot: Snapshot, top: float | None = None) -> Ell
     centers = np.stack([snapshot.x, snapshot.y], axis=-1)
     discs, radius, spread = None, snapshot.of_agents("radius"), snapshot.of_agents("mouth_spread")
     for species in np.unique(snapshot.species).tolist():
-        mine = snapshot.species == species
+        in_species = snapshot.species == species
         several = len(snapshot.species_names) > 1
         edge = {"edgecolors": species_color(species) if several else MUTED, "linewidths": 1.8 if several else 0.5}
-        discs = _discs(axes, centers[mine], radius[mine], **edge)
+        discs = _discs(axes, centers[in_species], radius[in_species], **edge)
         if top is None:
             discs.set_facecolor(AGENT_COLOR)
         else:
-            discs.set(array=snapshot.energy[mine], cmap=_ENERGY_COLORS, norm=Normalize(0, top))
+            discs.set(array=snapshot.energy[in_species], cmap=_ENERGY_COLORS, norm=Normalize(0, top))
     degree = np.degrees(snapshot.angle) + snapshot.of_agents("mouth_center") + 90.0  # Matplotlib counts from +x
     mouths = [
         Wedge((x, y), r, a - half, a + half, width=1.9)
         for (x, y), a, r, half in zip(centers, degree, radius, spread, strict=True)
     ]
     axes.add_collection(PatchCollection(mouths, facecolor=INK, edgecolor="none", zorder=4))
-    ahead = np.stack([-np.sin(snapshot.angle), np.cos(snapshot.angle)], axis=-1)
-    noses = np.stack([centers, centers + 0.82 * radius[:, None] * ahead], axis=1)
+    headings = np.stack([-np.sin(snapshot.angle), np.cos(snapshot.angle)], axis=-1)
+    noses = np.stack([centers, centers + 0.82 * radius[:, None] * headings], axis=1)
     axes.add_collection(LineCollection(list(noses), colors=INK, linewidths=0.9, zorder=4))
     if discs is None:
         raise ValueError("nobody lives")
@@ -186,8 +186,8 @@ def _top_energy(energy: np.ndarray) -> float:
 
 
 def _draw_energy_bar(figure: Figure, axes: Axes, snapshot: Snapshot, discs: EllipseCollection, top: float) -> None:
-    over = "max" if snapshot.energy.max() > top else "neither"
-    bar = figure.colorbar(discs, ax=axes, location="right", shrink=0.5, aspect=24, pad=0.015, extend=over)
+    extension = "max" if snapshot.energy.max() > top else "neither"
+    bar = figure.colorbar(discs, ax=axes, location="right", shrink=0.5, aspect=24, pad=0.015, extend=extension)
     bar.set_label("energy of the agent")
     bar.outline.set_visible(False)
 
@@ -214,7 +214,7 @@ def _type_colors(snapshot: Snapshot, colors: Mapping[str, str]) -> list[str]:
     return [*species, *(colors[kind] for kind in snapshot.food_kinds), *solid]
 
 
-def _discs(axes: Axes, centers: np.ndarray, radius: float | np.ndarray, **look: object) -> EllipseCollection:
+def _discs(axes: Axes, centers: np.ndarray, radius: float | np.ndarray, **style: object) -> EllipseCollection:
     size = np.broadcast_to(2.0 * np.asarray(radius), len(centers))
     discs = EllipseCollection(
         size,
@@ -223,7 +223,7 @@ def _discs(axes: Axes, centers: np.ndarray, radius: float | np.ndarray, **look: 
         units="xy",
         offsets=centers,
         offset_transform=axes.transData,
-        **look,
+        **style,
     )
     discs.set_zorder(3)
     axes.add_collection(discs)
@@ -238,8 +238,8 @@ def _draw_scale(axes: Axes, low: np.ndarray, width: float) -> None:
 
 
 def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_rays: bool) -> None:
-    dot = {"marker": "o", "linestyle": "", "markersize": 5}
-    handles = [Line2D([], [], color=colors[kind], label=f"{kind} food", **dot) for kind in snapshot.food_kinds]
+    marker_style = {"marker": "o", "linestyle": "", "markersize": 5}
+    handles = [Line2D([], [], color=colors[kind], label=f"{kind} food", **marker_style) for kind in snapshot.food_kinds]
     ring = {"marker": "o", "markersize": 8, "linestyle": "", "markerfacecolor": "none", "markeredgewidth": 1.8}
     handles += [
         Line2D([], [], markeredgecolor=species_color(i), label=name, **ring)
@@ -258,6 +258,6 @@ def _legend(figure: Figure, snapshot: Snapshot, colors: Mapping[str, str], with_
         handles += [Line2D([], [], color=color, linewidth=1.4, label=label) for label, color in rays.items()]
     columns = len(handles) if len(handles) <= _LEGEND_COLUMNS else -(-len(handles) // 2)
     legend = wrapped_legend(figure, handles, columns, loc="outside lower center", columnspacing=1.4)
-    more = legend.get_window_extent().height / figure.dpi - _LEGEND_HEIGHT
-    if more > 0:
-        figure.set_figheight(figure.get_figheight() + more)
+    extra_height = legend.get_window_extent().height / figure.dpi - _LEGEND_HEIGHT
+    if extra_height > 0:
+        figure.set_figheight(figure.get_figheight() + extra_height)
