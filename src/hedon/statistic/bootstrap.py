@@ -37,8 +37,8 @@ def resampled_sums(
         The sums of each sample, shape (replicates, q).
     """
     order = np.argsort(cluster, kind="stable")
-    first = np.flatnonzero(np.diff(cluster[order], prepend=cluster[order[:1]] - 1))
-    sums = np.add.reduceat(features[order], first, axis=0).astype(np.float32)
+    starts = np.flatnonzero(np.diff(cluster[order], prepend=cluster[order[:1]] - 1))
+    sums = np.add.reduceat(features[order], starts, axis=0).astype(np.float32)
     return np.concatenate([(draws @ sums).astype(np.float64) for draws in _draws(rng, replicates, len(sums))])
 
 
@@ -59,5 +59,5 @@ def percentile_interval(values: NDArray[np.float64], level: float = LEVEL) -> ND
 def _draws(rng: np.random.Generator, replicates: int, count: int) -> Iterator[NDArray[np.float32]]:
     """How often each cluster is drawn, in blocks of several replicates."""
     piece = max(_CHUNK // max(count, 1), 1)
-    for first in range(0, replicates, piece):
-        yield _COUNTS[rng.integers(0, 256, (min(piece, replicates - first), count), np.uint8)]
+    for start in range(0, replicates, piece):
+        yield _COUNTS[rng.integers(0, 256, (min(piece, replicates - start), count), np.uint8)]

@@ -36,11 +36,11 @@ def fisher_mid_p(count: int, of: int, other_count: int, other_of: int) -> float:
         other_count: Worlds of the second group with the property.
         other_of: Number of worlds in the second group.
     """
-    least, most = max(0, count + other_count - other_of), min(of, count + other_count)
-    chances = stats.hypergeom.pmf(np.arange(least, most + 1), of + other_of, count + other_count, of)
-    seen = float(chances[count - least])
-    less, same = chances < seen * (1.0 - _EQUAL), np.abs(chances - seen) <= seen * _EQUAL
-    return float(chances[less].sum() + 0.5 * chances[same].sum())
+    lowest, highest = max(0, count + other_count - other_of), min(of, count + other_count)
+    chances = stats.hypergeom.pmf(np.arange(lowest, highest + 1), of + other_of, count + other_count, of)
+    observed = float(chances[count - lowest])
+    is_less, is_equal = chances < observed * (1.0 - _EQUAL), np.abs(chances - observed) <= observed * _EQUAL
+    return float(chances[is_less].sum() + 0.5 * chances[is_equal].sum())
 
 
 def difference_interval(values: Floats, others: Floats, level: float = LEVEL) -> tuple[float, float, float]:
@@ -54,8 +54,8 @@ def difference_interval(values: Floats, others: Floats, level: float = LEVEL) ->
     Returns:
         Difference, lower and upper bound.
     """
-    found = stats.ttest_ind(values, others, equal_var=False).confidence_interval(level)
-    return float(values.mean() - others.mean()), float(found.low), float(found.high)
+    interval = stats.ttest_ind(values, others, equal_var=False).confidence_interval(level)
+    return float(values.mean() - others.mean()), float(interval.low), float(interval.high)
 
 
 @dataclass(frozen=True)
@@ -124,10 +124,10 @@ def _change(x: Floats, y: Floats, axis: int) -> Floats:
 def _permuted(samples: tuple[Floats, ...], statistic: Any, kind: str = "independent") -> float:
     """The two-sided p value of a permutation test, over all permutations if there are few enough."""
     rng = np.random.default_rng(_SEED)
-    found = stats.permutation_test(
+    result = stats.permutation_test(
         samples, statistic, permutation_type=kind, n_resamples=PERMUTATIONS, rng=rng, vectorized=True
     )
-    return float(found.pvalue)
+    return float(result.pvalue)
 
 
 def spread_ratio_interval(values: Floats, others: Floats, level: float = LEVEL) -> tuple[float, float, float]:
@@ -146,10 +146,10 @@ def spread_ratio_interval(values: Floats, others: Floats, level: float = LEVEL) 
     Returns:
         Ratio, lower and upper bound; NaN if a group does not vary.
     """
-    one, other = (_log_distances(each) for each in (values, others))
-    if min(len(one), len(other)) < 2:
+    distances, other_distances = (_log_distances(sample) for sample in (values, others))
+    if min(len(distances), len(other_distances)) < 2:
         return math.nan, math.nan, math.nan
-    ratio, low, high = (math.exp(bound) for bound in difference_interval(one, other, level))
+    ratio, low, high = (math.exp(bound) for bound in difference_interval(distances, other_distances, level))
     return ratio, low, high
 
 

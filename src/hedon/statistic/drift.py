@@ -67,9 +67,9 @@ def rank_score(value: float, null: Floats, rng: np.random.Generator) -> float:
     """
     if np.ptp(null) <= _TIE:
         return NAN
-    tied = np.abs(null - value) <= _TIE
-    below = np.count_nonzero((null < value) & ~tied) + int(rng.integers(0, np.count_nonzero(tied) + 1))
-    return normal_quantile((below + 0.5) / (len(null) + 1))
+    is_tied = np.abs(null - value) <= _TIE
+    rank = np.count_nonzero((null < value) & ~is_tied) + int(rng.integers(0, np.count_nonzero(is_tied) + 1))
+    return normal_quantile((rank + 0.5) / (len(null) + 1))
 
 
 def score_tests(scores: Floats) -> list[ScoreTest]:
@@ -87,11 +87,11 @@ def score_tests(scores: Floats) -> list[ScoreTest]:
     effect, t_low, t_high = mean_bounds(scores)
     square = float(np.sum(scores**2))
     distance, low, high = distance_interval(scores)
-    wide = (low, high) if n > 1 else (NAN, NAN)
+    interval = (low, high) if n > 1 else (NAN, NAN)
     return [
         ScoreTest("direction", n, effect, t_low, t_high, p, NAN, effect - half, effect + half),
-        ScoreTest("distance", n, distance, *wide, chi2_above(square, n)),
-        ScoreTest("held", n, distance, *wide, chi2_below(square, n)),
+        ScoreTest("distance", n, distance, *interval, chi2_above(square, n)),
+        ScoreTest("held", n, distance, *interval, chi2_below(square, n)),
     ]
 
 
@@ -105,5 +105,5 @@ def rank_sum_p(ranks: Sequence[int], of: Sequence[int]) -> float:
     chances = np.ones(1)
     for count in of:
         chances = np.convolve(chances, np.full(count, 1.0 / count))
-    at = sum(ranks) - len(ranks)
-    return min(1.0, 2.0 * float(min(chances[: at + 1].sum(), chances[at:].sum())))
+    index = sum(ranks) - len(ranks)
+    return min(1.0, 2.0 * float(min(chances[: index + 1].sum(), chances[index:].sum())))

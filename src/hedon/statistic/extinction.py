@@ -67,14 +67,14 @@ def extinct_share(duration: Floats, died: Flags, until: float, level: float = LE
     """
     if not len(duration):
         return ExtinctShare(np.nan, np.nan, np.nan, 0, 0, 0, 0.0)
-    gone = died & (duration <= until)
+    is_extinct = died & (duration <= until)
     time = np.minimum(duration, until)
-    followed = int(np.count_nonzero(~gone & (time >= until)))
-    curve = survival_curve(time, gone)
+    followed = int(np.count_nonzero(~is_extinct & (time >= until)))
+    curve = survival_curve(time, is_extinct)
     alive = float(curve.share[-1]) if len(curve.age) else 1.0
     low, high = _bounds(curve.at_risk, curve.deaths, followed, level)
-    reached = float(until) if followed or gone.all() else float(time.max())
-    return ExtinctShare(1.0 - alive, 1.0 - high, 1.0 - low, len(time), int(gone.sum()), followed, reached)
+    known_until = float(until) if followed or is_extinct.all() else float(time.max())
+    return ExtinctShare(1.0 - alive, 1.0 - high, 1.0 - low, len(time), int(is_extinct.sum()), followed, known_until)
 
 
 def _bounds(at_risk: NDArray[np.int64], deaths: NDArray[np.int64], followed: int, level: float) -> tuple[float, float]:
@@ -130,17 +130,17 @@ def log_rank(
     rng = np.random.default_rng(_SEED)
     groups = np.tile(first, (draws + 1, 1))
     difference, variance = np.zeros(draws + 1), np.zeros(draws + 1)
-    for each in np.unique(stratum):
-        mine = stratum == each
-        own = groups[:, mine]
-        own[1:] = rng.permuted(own[1:], axis=1)
-        step = np.unique(lived[mine & ended])[:, None]
-        at_risk, died = lived[mine] >= step, (lived[mine] == step) & ended[mine]
+    for stratum_index in np.unique(stratum):
+        in_stratum = stratum == stratum_index
+        stratum_groups = groups[:, in_stratum]
+        stratum_groups[1:] = rng.permuted(stratum_groups[1:], axis=1)
+        step = np.unique(lived[in_stratum & ended])[:, None]
+        at_risk, died = lived[in_stratum] >= step, (lived[in_stratum] == step) & ended[in_stratum]
         risk, deaths = at_risk.sum(axis=1), died.sum(axis=1)
-        share = own.astype(float) @ at_risk.T / risk
-        difference += (own.astype(float) @ died.T - deaths * share).sum(axis=1)
-        left = np.where(risk > 1, (risk - deaths) / np.maximum(risk - 1, 1), 0.0)
-        variance += (deaths * share * (1.0 - share) * left).sum(axis=1)
+        share = stratum_groups.astype(float) @ at_risk.T / risk
+        difference += (stratum_groups.astype(float) @ died.T - deaths * share).sum(axis=1)
+        correction = np.where(risk > 1, (risk - deaths) / np.maximum(risk - 1, 1), 0.0)
+        variance += (deaths * share * (1.0 - share) * correction).sum(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.nan_to_num(difference**2 / variance)
-    return float(np.count_nonzero(found >= found[0] - 1e-9) / (draws + 1))
+        statistics = np.nan_to_num(difference**2 / variance)
+    return float(np.count_nonzero(statistics >= statistics[0] - 1e-9) / (draws + 1))

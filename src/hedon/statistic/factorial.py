@@ -97,23 +97,23 @@ def fit_factorial(cells: Mapping[Cell, Mapping[int, float]], factors: int) -> Fa
     filled = {cell: values for cell, values in cells.items() if values}
     rows = [(cell, value) for cell, values in filled.items() for value in values.values()]
     values = np.array([value for _, value in rows])
-    counts = np.array([len(own) for own in filled.values()])
+    counts = np.array([len(cell_values) for cell_values in filled.values()])
     variances = _variances(filled)
-    found = []
+    unadjusted = []
     for group, (order, weights) in _solve([cell for cell, _ in rows], factors).items():
         estimate = float(weights @ values)
         parts = np.repeat(variances, counts) * weights**2
         error, freedom = math.sqrt(parts.sum()), _freedom(parts, np.repeat(counts, counts))
-        reach = t_quantile(0.5 + LEVEL / 2, freedom) * error if error > 0 else error
+        half_width = t_quantile(0.5 + LEVEL / 2, freedom) * error if error > 0 else error
         p = 2.0 * t_above(abs(estimate) / error, freedom) if error > 0 else NAN
         seeds = _in_seeds(filled, factors, group, order)
         low, high = min(seeds, default=NAN), max(seeds, default=NAN)
-        bounds = (estimate - reach, estimate + reach)
-        found.append(Effect(group, order, estimate, *bounds, p, freedom, NAN, low, high, len(seeds)))
-    corrected = holm([effect.p for effect in found])
-    effects = tuple(replace(effect, p_holm=p) for effect, p in zip(found, corrected, strict=True))
-    told = {effect.factors for effect in effects}
-    return FactorialFit(effects, tuple(group for group in all_effects(factors) if group not in told))
+        bounds = (estimate - half_width, estimate + half_width)
+        unadjusted.append(Effect(group, order, estimate, *bounds, p, freedom, NAN, low, high, len(seeds)))
+    corrected = holm([effect.p for effect in unadjusted])
+    effects = tuple(replace(effect, p_holm=p) for effect, p in zip(unadjusted, corrected, strict=True))
+    estimated = {effect.factors for effect in effects}
+    return FactorialFit(effects, tuple(group for group in all_effects(factors) if group not in estimated))
 
 
 def _variances(cells: Mapping[Cell, Mapping[int, float]]) -> NDArray[np.float64]:
@@ -132,8 +132,8 @@ def _freedom(parts: NDArray[np.float64], counts: NDArray[np.int_]) -> float:
         counts: Number of worlds in the cell of each world, (worlds,).
     """
     # The n worlds of a cell add n equal parts v, so (n v)² / (n − 1) is the sum over them of n v² / (n − 1).
-    spread = float((parts**2 * counts / (counts - 1.0)).sum()) if counts.min(initial=2) > 1 else NAN
-    return float(parts.sum()) ** 2 / spread if spread > 0 else NAN
+    denominator = float((parts**2 * counts / (counts - 1.0)).sum()) if counts.min(initial=2) > 1 else NAN
+    return float(parts.sum()) ** 2 / denominator if denominator > 0 else NAN
 
 
 def all_effects(factors: int, order: int | None = None) -> list[Factors]:
@@ -152,30 +152,30 @@ def _solve(cells: Sequence[Cell], factors: int) -> dict[Factors, tuple[int, NDAr
     solved: dict[Factors, tuple[int, NDArray[np.float64]]] = {}
     if not cells:
         return solved
-    everything = [(), *all_effects(factors)]
-    whole = _design(cells, everything)
+    model_effects = [(), *all_effects(factors)]
+    full_design = _design(cells, model_effects)
     for order in range(factors, 0, -1):
         model = [(), *all_effects(factors, order)]
         inverse = np.linalg.pinv(_design(cells, model))
         for group, weights in list(zip(model, inverse, strict=True))[1:]:
             # The share of each true effect in the estimate: 1 for the effect itself, and 0 for all effects that do not
             # include its factors.
-            holds = dict(zip(everything, weights @ whole, strict=True))
-            strange = max(abs(share) for effect, share in holds.items() if not set(group) <= set(effect))
-            if group not in solved and abs(holds[group] - 1.0) < _TOLERANCE and strange < _TOLERANCE:
+            coefficients = dict(zip(model_effects, weights @ full_design, strict=True))
+            largest_bias = max(abs(share) for effect, share in coefficients.items() if not set(group) <= set(effect))
+            if group not in solved and abs(coefficients[group] - 1.0) < _TOLERANCE and largest_bias < _TOLERANCE:
                 solved[group] = (order, weights)
     return {group: solved[group] for group in all_effects(factors) if group in solved}
 
 
 def _in_seeds(cells: Mapping[Cell, Mapping[int, float]], factors: int, group: Factors, order: int) -> list[float]:
     """Estimates of an effect from each single seed whose cells determine it with a model of the same order."""
-    found = []
+    estimates = []
     for seed in sorted({seed for values in cells.values() for seed in values}):
-        mine = [cell for cell, values in cells.items() if seed in values]
-        solved = _solve(mine, factors).get(group)
-        if solved is not None and solved[0] == order:
-            found.append(float(solved[1] @ np.array([cells[cell][seed] for cell in mine])))
-    return found
+        seed_cells = [cell for cell, values in cells.items() if seed in values]
+        solution = _solve(seed_cells, factors).get(group)
+        if solution is not None and solution[0] == order:
+            estimates.append(float(solution[1] @ np.array([cells[cell][seed] for cell in seed_cells])))
+    return estimates
 
 
 def _design(cells: Sequence[Cell], groups: Sequence[Factors]) -> NDArray[np.float64]:

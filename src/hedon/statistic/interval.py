@@ -46,14 +46,14 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL, within: 
         within: Possible values. The interval is cut to them, which does not change its level, since the true mean
             cannot be beyond.
     """
-    known = np.array([value for value in values if value is not None and math.isfinite(value)], np.float64)
-    if known.size == 0:
+    finite = np.array([value for value in values if value is not None and math.isfinite(value)], np.float64)
+    if finite.size == 0:
         return Interval(None, None, None, 0)
-    mean = float(known.mean())
-    if known.size < FOR_INTERVAL:
-        return Interval(mean, None, None, known.size)
-    half = float(t_quantile(0.5 + level / 2, known.size - 1) * known.std(ddof=1) / math.sqrt(known.size))
-    return Interval(mean, max(mean - half, within[0]), min(mean + half, within[1]), known.size)
+    mean = float(finite.mean())
+    if finite.size < FOR_INTERVAL:
+        return Interval(mean, None, None, finite.size)
+    half = float(t_quantile(0.5 + level / 2, finite.size - 1) * finite.std(ddof=1) / math.sqrt(finite.size))
+    return Interval(mean, max(mean - half, within[0]), min(mean + half, within[1]), finite.size)
 
 
 def mean_bounds(values: Iterable[float | None], level: float = LEVEL) -> tuple[float, float, float]:
@@ -66,8 +66,10 @@ def mean_bounds(values: Iterable[float | None], level: float = LEVEL) -> tuple[f
     Returns:
         Mean, lower and upper bound.
     """
-    found = mean_interval(values, level)
-    mean, low, high = (math.nan if number is None else number for number in (found.mean, found.low, found.high))
+    interval = mean_interval(values, level)
+    mean, low, high = (
+        math.nan if number is None else number for number in (interval.mean, interval.low, interval.high)
+    )
     return mean, low, high
 
 

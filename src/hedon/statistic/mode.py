@@ -66,14 +66,14 @@ def modes(values: Floats) -> Modes:
     count = len(values)
     if count < _FEWEST:
         return Modes(count, "undecided", np.nan, np.nan, 0.0)
-    found = dip(values)
+    statistic = dip(values)
     null, power = _null_and_power(count)
-    p = float((np.count_nonzero(null >= found) + 1) / (len(null) + 1))
+    p = float((np.count_nonzero(null >= statistic) + 1) / (len(null) + 1))
     if p > LEVEL:
-        return Modes(count, "undecided", found, p, power)
+        return Modes(count, "undecided", statistic, p, power)
     split = 2 + int(np.argmax(np.diff(values[1:-1])))
     low, high = values[:split], values[split:]
-    return Modes(count, "two", found, p, power, float(low.mean()), float(high.mean()), len(low), len(high))
+    return Modes(count, "two", statistic, p, power, float(low.mean()), float(high.mean()), len(low), len(high))
 
 
 def dip(values: Floats) -> float:
@@ -82,9 +82,9 @@ def dip(values: Floats) -> float:
     Args:
         values: The sample in ascending order, shape (n,), n > 0.
     """
-    found = diptest.dipstat(values, allow_zero=False, sort_x=False)
-    assert isinstance(found, float)  # a tuple only if the full output is requested
-    return found
+    statistic = diptest.dipstat(values, allow_zero=False, sort_x=False)
+    assert isinstance(statistic, float)  # a tuple only if the full output is requested
+    return statistic
 
 
 @cache
@@ -94,5 +94,5 @@ def _null_and_power(count: int) -> tuple[Floats, float]:
     null = np.array([dip(np.sort(rng.random(count))) for _ in range(_NULL_SAMPLES)])
     limit = np.quantile(null, 1.0 - LEVEL)
     shifts = _CLEAR * (rng.random((_POWER_TRIALS, count)) < 0.5)
-    found = [dip(np.sort(rng.normal(size=count) + shift)) > limit for shift in shifts]
-    return null, float(np.mean(found))
+    detected = [dip(np.sort(rng.normal(size=count) + shift)) > limit for shift in shifts]
+    return null, float(np.mean(detected))

@@ -47,8 +47,8 @@ def t_test_power(effect: float, worlds: float, level: float = 0.05, *, paired: b
     edge = t_quantile(1.0 - level / 2, degrees)
     if shift - edge > CERTAIN:  # where the noncentral t distribution cannot be evaluated
         return 1.0
-    far = float(stats.nct.cdf(-edge, degrees, shift))  # significant with the wrong sign; NaN if too small to represent
-    return float(stats.nct.sf(edge, degrees, shift)) + (0.0 if math.isnan(far) else far)
+    wrong_sign = float(stats.nct.cdf(-edge, degrees, shift))  # NaN if too small to represent
+    return float(stats.nct.sf(edge, degrees, shift)) + (0.0 if math.isnan(wrong_sign) else wrong_sign)
 
 
 def pair_test_power(effect: float, pairs: int, level: float = 0.05) -> float:
@@ -111,12 +111,14 @@ def worlds_needed(effect: float, design: Design, power: float = 0.8, level: floa
     """
     if effect == 0 or not math.isfinite(effect) or contrast_power(effect, MOST, design, level) < power:
         return None
-    few = range(2, SIMULATED + 1)
-    enough = next((worlds for worlds in few if contrast_power(effect, worlds, design, level) >= power), None)
-    if enough is not None:
-        return enough
-    least = SIMULATED + 1
-    return least + bisect_left(range(least, MOST), power, key=lambda n: contrast_power(effect, n, design, level))
+    small_counts = range(2, SIMULATED + 1)
+    sufficient = next(
+        (worlds for worlds in small_counts if contrast_power(effect, worlds, design, level) >= power), None
+    )
+    if sufficient is not None:
+        return sufficient
+    start = SIMULATED + 1
+    return start + bisect_left(range(start, MOST), power, key=lambda n: contrast_power(effect, n, design, level))
 
 
 def effect_seen(worlds: int, design: Design, power: float = 0.8, level: float = 0.05) -> float:
@@ -131,10 +133,10 @@ def effect_seen(worlds: int, design: Design, power: float = 0.8, level: float = 
     Returns:
         The effect; infinite if so few worlds cannot find any effect.
     """
-    most = 1e3
-    if contrast_power(most, worlds, design, level) < power:
+    largest = 1e3
+    if contrast_power(largest, worlds, design, level) < power:
         return math.inf
-    found = optimize.root_scalar(
-        lambda effect: contrast_power(effect, worlds, design, level) - power, bracket=(0.0, most), xtol=1e-12
+    solution = optimize.root_scalar(
+        lambda effect: contrast_power(effect, worlds, design, level) - power, bracket=(0.0, largest), xtol=1e-12
     )
-    return float(found.root)
+    return float(solution.root)

@@ -73,30 +73,32 @@ def reversion(courses: Sequence[Floats], neutral: Sequence[Floats], level: float
     usable = [i for i, course in enumerate(courses) if is_usable(course)]
     if not usable:
         return None
-    seen = [courses[i] for i in usable]
+    usable_courses = [courses[i] for i in usable]
     walks = [neutral[i] for i in usable]
-    slope, ratio, optimum = (float(x[0]) for x in _fit([_sums(course[None]) for course in seen]))
+    slope, ratio, optimum = (float(x[0]) for x in _fit([_sums(course[None]) for course in usable_courses]))
     ratios = _fit([_sums(walk) for walk in walks])[1]
     p = float((np.count_nonzero(ratios <= ratio) + 1) / (len(ratios) + 1))
-    shocks = [np.diff(w, axis=1) * (_size(c[None]) / _size(w))[:, None] for c, w in zip(seen, walks, strict=True)]
+    shocks = [
+        np.diff(w, axis=1) * (_size(c[None]) / _size(w))[:, None] for c, w in zip(usable_courses, walks, strict=True)
+    ]
     tail = 0.5 * (1.0 - level)
-    best = np.array([_reachable(seen, _best_optimum(seen, 1.0 - np.exp(-rate))) for rate in _RATES])
-    tried = np.quantile(-_pulled(seen, shocks, _RATES, best)[0], (tail, 0.5, 1.0 - tail), axis=1)
-    high, middle, low = (_rate_where(estimates, -slope) for estimates in tried)
+    best = np.array([_reachable(usable_courses, _best_optimum(usable_courses, 1.0 - np.exp(-rate))) for rate in _RATES])
+    quantiles = np.quantile(-_pulled(usable_courses, shocks, _RATES, best)[0], (tail, 0.5, 1.0 - tail), axis=1)
+    high, middle, low = (_rate_where(estimates, -slope) for estimates in quantiles)
     bounds = (np.nan, np.nan)
-    found = p <= SHOWN_LEVEL and middle > 0  # a steady course can look unlike drift without being pulled anywhere
-    if found:
+    is_shown = p <= SHOWN_LEVEL and middle > 0  # a steady course can look unlike drift without being pulled anywhere
+    if is_shown:
         rate = min(max(middle, _RATES[1]), _RATES[-1])
-        center = _reachable(seen, optimum)
-        errors = _pulled(seen, shocks, np.array([rate]), np.array([center]))[2][0] - center
+        center = _reachable(usable_courses, optimum)
+        errors = _pulled(usable_courses, shocks, np.array([rate]), np.array([center]))[2][0] - center
         bounds = optimum - np.quantile(errors, (1.0 - tail, tail))
     return Reversion(
-        worlds=len(seen),
-        intervals=sum(len(course) - 1 for course in seen),
+        worlds=len(usable_courses),
+        intervals=sum(len(course) - 1 for course in usable_courses),
         strength=middle,
         strength_low=low,
         strength_high=high,
-        optimum=optimum if found else np.nan,
+        optimum=optimum if is_shown else np.nan,
         optimum_low=float(bounds[0]),
         optimum_high=float(bounds[1]),
         p=p,
@@ -132,14 +134,14 @@ def _fit(sums: Sequence[Floats]) -> tuple[Floats, Floats, Floats]:
     Returns:
         Three arrays of shape (...).
     """
-    count = sum(int(each[0].flat[0]) for each in sums)
-    one, x, xx, y, xy, yy = np.sum([each * _per_step(each) for each in sums], axis=0)
+    count = sum(int(world_sums[0].flat[0]) for world_sums in sums)
+    one, x, xx, y, xy, yy = np.sum([world_sums * _per_step(world_sums) for world_sums in sums], axis=0)
     spread = xx - x**2 / one
     varies = spread > _ROUNDING * xx  # otherwise all values before the last step are equal, and uninformative
     spread = np.where(varies, spread, 1.0)
     slope = np.where(varies, (xy - x * y / one) / spread, 0.0)
-    rest = yy - y**2 / one - slope**2 * spread
-    error = np.sqrt(np.maximum(rest, _ROUNDING * yy) / max(count - 2, 1) / spread)
+    residual = yy - y**2 / one - slope**2 * spread
+    error = np.sqrt(np.maximum(residual, _ROUNDING * yy) / max(count - 2, 1) / spread)
     with np.errstate(divide="ignore", invalid="ignore"):
         return slope, np.where(varies, slope / error, 0.0), (x - y / slope) / one
 
@@ -157,49 +159,51 @@ def _size(course: Floats) -> Floats:
 
 
 def _pulled(
-    seen: Sequence[Floats], shocks: Sequence[Floats], rates: Floats, optima: Floats
+    courses: Sequence[Floats], shocks: Sequence[Floats], rates: Floats, optima: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Fits to simulated courses with the observed starts, the given shocks and a pull: each (rates, samples).
 
     All rates and samples advance together, step by step, so that they stay in the processor's cache; this is four times
     as fast as simulating course by course.
     """
-    kept = np.exp(-rates)[:, None]
+    retained = np.exp(-rates)[:, None]
     worlds = []
-    for course, shock in zip(seen, shocks, strict=True):
-        away = np.repeat((course[0] - optima)[:, None], len(shock), axis=1)
-        sums = np.zeros((6, *away.shape))
+    for course, shock in zip(courses, shocks, strict=True):
+        deviations = np.repeat((course[0] - optima)[:, None], len(shock), axis=1)
+        sums = np.zeros((6, *deviations.shape))
         sums[0] = shock.shape[1]
-        for each in np.ascontiguousarray(shock.T):
-            after = kept * away
-            after += each
-            step = after - away
-            for total, term in zip(sums[1:], (away, away * away, step, away * step, step * step), strict=True):
+        for step_shocks in np.ascontiguousarray(shock.T):
+            next_values = retained * deviations
+            next_values += step_shocks
+            step = next_values - deviations
+            for total, term in zip(
+                sums[1:], (deviations, deviations * deviations, step, deviations * step, step * step), strict=True
+            ):
                 total += term
-            away = after
+            deviations = next_values
         worlds.append(sums)
     slope, ratio, optimum = _fit(worlds)
     return slope, ratio, optimum + optima[:, None]
 
 
-def _best_optimum(seen: Sequence[Floats], pull: float) -> float:
+def _best_optimum(courses: Sequence[Floats], pull: float) -> float:
     """The best-fitting optimum if each interval removes a share `pull` of the distance to it."""
-    weights = np.array([(len(c) - 1) / float(_size(c[None])[0]) ** 2 for c in seen])
-    means = np.array([c[:-1].mean() + (np.diff(c).mean() / pull if pull > 0 else 0.0) for c in seen])
+    weights = np.array([(len(c) - 1) / float(_size(c[None])[0]) ** 2 for c in courses])
+    means = np.array([c[:-1].mean() + (np.diff(c).mean() / pull if pull > 0 else 0.0) for c in courses])
     return float(weights @ means / weights.sum())
 
 
-def _reachable(seen: Sequence[Floats], optimum: float) -> float:
-    return float(np.clip(optimum, min(c.min() for c in seen), max(c.max() for c in seen)))
+def _reachable(courses: Sequence[Floats], optimum: float) -> float:
+    return float(np.clip(optimum, min(c.min() for c in courses), max(c.max() for c in courses)))
 
 
-def _rate_where(estimates: Floats, seen: float) -> float:
+def _rate_where(estimates: Floats, observed: float) -> float:
     """The rate at which a quantile of the estimates equals the observed one; 0 or infinite beyond the rates tried."""
     rising = np.maximum.accumulate(estimates)
-    if seen <= rising[0]:
+    if observed <= rising[0]:
         return 0.0
-    if seen > rising[-1]:
+    if observed > rising[-1]:
         return np.inf
-    i = int(np.searchsorted(rising, seen))
-    share = (seen - rising[i - 1]) / (rising[i] - rising[i - 1])
+    i = int(np.searchsorted(rising, observed))
+    share = (observed - rising[i - 1]) / (rising[i] - rising[i - 1])
     return float(_RATES[i - 1] + share * (_RATES[i] - _RATES[i - 1]))

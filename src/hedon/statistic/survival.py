@@ -42,8 +42,8 @@ class SurvivalCurve:
 
     def trusted_age(self, at_risk: int = AT_RISK) -> float:
         """The largest age at death that at least `at_risk` agents reached [step]; 0 if there is none."""
-        reached = self.age[self.at_risk >= at_risk]
-        return float(reached[-1]) if len(reached) else 0.0
+        ages = self.age[self.at_risk >= at_risk]
+        return float(ages[-1]) if len(ages) else 0.0
 
     def quantile(self, share: float = 0.5) -> tuple[float | None, float | None, float | None]:
         """The age by which a share of the newborn has died, with its interval [step]; None beyond the record.
@@ -59,8 +59,8 @@ class SurvivalCurve:
         )
 
     def _first_below(self, curve: Floats, level: float) -> float | None:
-        below = self.age[curve <= level]
-        return float(below[0]) if len(below) else None
+        ages = self.age[curve <= level]
+        return float(ages[0]) if len(ages) else None
 
 
 @dataclass(frozen=True)
@@ -92,12 +92,12 @@ def survival_curve(duration: Floats, died: NDArray[np.bool_], level: float = LEV
         none = np.empty(0)
         return SurvivalCurve(none, none, none, none, np.empty(0, np.int64), np.empty(0, np.int64))
     at_risk = len(duration) - np.searchsorted(np.sort(duration), age, side="left")
-    left = at_risk - deaths
-    share = np.cumprod(left / at_risk, dtype=np.float64)
+    survivors = at_risk - deaths
+    share = np.cumprod(survivors / at_risk, dtype=np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):  # NaN if no agent remains, as documented
-        error = np.sqrt(np.cumsum(deaths / (at_risk * left))) / np.abs(np.log(share))
-        wide = normal_quantile((1 + level) / 2) * error
-        low, high = (np.asarray(share ** np.exp(sign * wide), np.float64) for sign in (1, -1))
+        error = np.sqrt(np.cumsum(deaths / (at_risk * survivors))) / np.abs(np.log(share))
+        half_width = normal_quantile((1 + level) / 2) * error
+        low, high = (np.asarray(share ** np.exp(sign * half_width), np.float64) for sign in (1, -1))
     return SurvivalCurve(age, share, low, high, at_risk, deaths)
 
 
@@ -110,14 +110,14 @@ def restricted_mean(curve: SurvivalCurve, until: float) -> RestrictedMean:
         curve: Share alive by age.
         until: Age at which the area ends [step].
     """
-    within = curve.age < until
-    age, share = curve.age[within], curve.share[within]
+    is_within = curve.age < until
+    age, share = curve.age[is_within], curve.share[is_within]
     steps = np.diff(np.concatenate([[0.0], age, [until]]))
     areas = steps * np.concatenate([[1.0], share])
-    beyond = np.cumsum(areas[::-1])[::-1][1:]  # area right of each age
-    n, d = curve.at_risk[within].astype(np.float64), curve.deaths[within].astype(np.float64)
-    left = n > d
-    variance = np.sum(beyond[left] ** 2 * d[left] / (n[left] * (n[left] - d[left])))
+    area_beyond = np.cumsum(areas[::-1])[::-1][1:]  # area right of each age
+    n, d = curve.at_risk[is_within].astype(np.float64), curve.deaths[is_within].astype(np.float64)
+    alive = n > d
+    variance = np.sum(area_beyond[alive] ** 2 * d[alive] / (n[alive] * (n[alive] - d[alive])))
     return RestrictedMean(float(areas.sum()), float(np.sqrt(variance)), float(until))
 
 
