@@ -29,18 +29,18 @@ def installed() -> tuple[Mapping[str, Study], Mapping[str, str]]:
     studies, faults = dict[str, Study](), dict[str, str]()
     for point in sorted(entry_points(group=GROUP), key=_order):
         package = point.dist.name if point.dist else "an unknown package"
-        where = f"the study {point.name!r} of {package} ({point.value})"
+        origin = f"the study {point.name!r} of {package} ({point.value})"
         try:
-            found = point.load()
+            study = point.load()
         except Exception as error:  # other packages may raise anything on import
-            faults[point.name] = f"{where} cannot be loaded: {type(error).__name__}: {error}"
+            faults[point.name] = f"{origin} cannot be loaded: {type(error).__name__}: {error}"
             continue
-        if not isinstance(found, Study) or found.name != point.name:
-            faults[point.name] = f"{where} is no hedon.study.Study of this name"
+        if not isinstance(study, Study) or study.name != point.name:
+            faults[point.name] = f"{origin} is no hedon.study.Study of this name"
         elif point.name in studies:
-            faults[f"{package}:{point.name}"] = f"{where} has a name that is taken: it is left out"
+            faults[f"{package}:{point.name}"] = f"{origin} has a name that is taken: it is left out"
         else:
-            studies[point.name] = found
+            studies[point.name] = study
     return studies, faults
 
 
@@ -58,14 +58,14 @@ def choose(names: Sequence[str]) -> tuple[Study, ...]:
         StudyError: No study or item has one of the names, or several have it.
     """
     studies, faults = installed()
-    wanted: dict[str, set[str]] = {}
+    chosen_items: dict[str, set[str]] = {}
     for name in studies if ALL in names else names:
         for study, items in _find(name, studies, faults).items():
-            wanted.setdefault(study, set()).update(items)
+            chosen_items.setdefault(study, set()).update(items)
     return tuple(
-        replace(study, items=tuple(item for item in study.items if item.name in wanted[name]))
+        replace(study, items=tuple(item for item in study.items if item.name in chosen_items[name]))
         for name, study in studies.items()
-        if name in wanted
+        if name in chosen_items
     )
 
 
@@ -76,19 +76,19 @@ def _find(name: str, studies: Mapping[str, Study], faults: Mapping[str, str]) ->
     if name in faults:
         raise StudyError(faults[name])
     holders = {
-        own: [item.name]
-        for own, study in studies.items()
+        holder: [item.name]
+        for holder, study in studies.items()
         for item in study.items
-        if name in (item.name, f"{own}/{item.name}")
+        if name in (item.name, f"{holder}/{item.name}")
     }
     if len(holders) > 1:
         raise StudyError(
-            f"several studies have an item {name!r}: say {' or '.join(f'{own}/{name}' for own in holders)}"
+            f"several studies have an item {name!r}: say {' or '.join(f'{holder}/{name}' for holder in holders)}"
         )
     if not holders:
         items = [item.name for study in studies.values() for item in study.items]
-        near = nearest(name, [*studies, *items])
-        hint = f"; did you mean {near}?" if near else ""
+        suggestion = nearest(name, [*studies, *items])
+        hint = f"; did you mean {suggestion}?" if suggestion else ""
         raise StudyError(
             f"there is no study or item {name!r}{hint}\nStudies: {', '.join(studies)}\nItems: {', '.join(items)}"
         )
@@ -97,5 +97,5 @@ def _find(name: str, studies: Mapping[str, Study], faults: Mapping[str, str]) ->
 
 def reported_figures(preset: str | None) -> dict[str, Mapping[str, Any]]:
     """The results that the sources of installed studies report for a preset, by study; see `Study.reported`."""
-    known = {name: study.reported.get(preset or "") for name, study in installed()[0].items()}
-    return {name: figures for name, figures in known.items() if figures is not None}
+    reported = {name: study.reported.get(preset or "") for name, study in installed()[0].items()}
+    return {name: results for name, results in reported.items() if results is not None}

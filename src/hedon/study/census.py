@@ -18,8 +18,8 @@ def present(conditions: Iterable[Condition], inputs: ItemInputs) -> dict[str, Se
         conditions: Conditions of an item.
         inputs: Data with the available worlds.
     """
-    found = {condition.label: inputs.worlds.get(condition.label, ()) for condition in conditions}
-    return {label: worlds for label, worlds in found.items() if worlds}
+    worlds_by_label = {condition.label: inputs.worlds.get(condition.label, ()) for condition in conditions}
+    return {label: worlds for label, worlds in worlds_by_label.items() if worlds}
 
 
 def missing(conditions: Iterable[Condition], inputs: ItemInputs) -> str:
@@ -29,8 +29,8 @@ def missing(conditions: Iterable[Condition], inputs: ItemInputs) -> str:
         conditions: Conditions of an item.
         inputs: Data with the available worlds.
     """
-    absent = [condition.label for condition in conditions if not inputs.worlds.get(condition.label)]
-    return f"Not run yet: {'; '.join(absent)}." if absent else ""
+    missing_labels = [condition.label for condition in conditions if not inputs.worlds.get(condition.label)]
+    return f"Not run yet: {'; '.join(missing_labels)}." if missing_labels else ""
 
 
 def sentences(*parts: str) -> str:
@@ -51,12 +51,14 @@ def steps_reached(worlds: Iterable[WorldRecord]) -> int:
 def describe(worlds: Sequence[WorldRecord]) -> tuple[str, str]:
     """The description of one condition's worlds in a title: number and length, and which of them died out."""
     living = [world.last_step for world in worlds if world.extinct_step is None]
-    told = count(len(worlds), "world")
+    description = count(len(worlds), "world")
     if not living:
         step = _steps(steps_reached(worlds))
-        return told, f"died out at step {step}" if len(worlds) == 1 else f"all died out by step {step}"
-    reach = _steps(max(living)) if min(living) == max(living) else f"{_steps(min(living))} to {_steps(max(living))}"
-    return f"{told}, {reach} steps", _died_out([world.seed for world in worlds if world.extinct_step is not None])
+        return description, f"died out at step {step}" if len(worlds) == 1 else f"all died out by step {step}"
+    length = _steps(max(living)) if min(living) == max(living) else f"{_steps(min(living))} to {_steps(max(living))}"
+    return f"{description}, {length} steps", _died_out(
+        [world.seed for world in worlds if world.extinct_step is not None]
+    )
 
 
 def world_indices(groups: Iterable[Sequence[WorldRecord]]) -> dict[int, int]:

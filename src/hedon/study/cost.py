@@ -58,8 +58,8 @@ def request_cost(request: Request, folder: Path, threads: int) -> RequestCost:
             total += job.world_steps / speeds[kinds].rate
         return total
 
-    def cost(asked: Request) -> Cost:
-        demands = needs(asked)
+    def cost(requested: Request) -> Cost:
+        demands = needs(requested)
         return Cost(seconds(Ensemble(demands, folder)), seconds(find_ensemble(demands, folder)))
 
     items = tuple(cost(replace(request, items=(item,))) for item in request.items)

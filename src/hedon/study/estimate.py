@@ -68,14 +68,14 @@ def estimate(claim: Claim, figures: Floats, worlds: Sequence[WorldRecord]) -> Cl
     return ClaimEstimate(math.exp(value), math.exp(low), math.exp(high)) if logs else ClaimEstimate(value, low, high)
 
 
-def _modes(figures: Floats) -> ClaimEstimate:
+def _modes(values: Floats) -> ClaimEstimate:
     """With two modes the claim holds. It never fails, since finding no second mode does not show that there is one."""
-    found = modes(figures)
-    power = f"power {found.power:.2f}"
-    if found.answer == "two":
-        sides = f"{found.low_worlds} worlds around {found.low:.2f}, {found.high_worlds} around {found.high:.2f}"
-        return ClaimEstimate(verdict="holds", reason=f"{sides}; dip test: p {found.p:.2g}, {power}")
-    return ClaimEstimate(verdict="undecided", reason=f"dip test: p {found.p:.2f}, {power} to find two clear modes")
+    result = modes(values)
+    power = f"power {result.power:.2f}"
+    if result.answer == "two":
+        sides = f"{result.low_worlds} worlds around {result.low:.2f}, {result.high_worlds} around {result.high:.2f}"
+        return ClaimEstimate(verdict="holds", reason=f"{sides}; dip test: p {result.p:.2g}, {power}")
+    return ClaimEstimate(verdict="undecided", reason=f"dip test: p {result.p:.2f}, {power} to find two clear modes")
 
 
 def _walk(scores: Floats) -> ClaimEstimate:
@@ -108,10 +108,10 @@ def _against_neutral(claim: Claim, scores: Floats, worlds: Sequence[WorldRecord]
     if len(neutral) < 2:
         return ClaimEstimate(value, low, high)
     control = distance_interval(neutral)
-    said = "recorded neutral genes: {:.2f} ({:.2f} … {:.2f})".format(*control)
+    control_text = "recorded neutral genes: {:.2f} ({:.2f} … {:.2f})".format(*control)
     if control[1] <= 1.0 <= control[2]:
-        return ClaimEstimate(value, low, high, reason=said)
-    return ClaimEstimate(value, low, high, "undecided", f"{said}, which differ from the walks")
+        return ClaimEstimate(value, low, high, reason=control_text)
+    return ClaimEstimate(value, low, high, "undecided", f"{control_text}, which differ from the walks")
 
 
 def compare(

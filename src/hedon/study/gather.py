@@ -42,22 +42,22 @@ class Gathered:
         scale, fidelity = self.request.scale(item), self.request.fidelity
         configs = {condition.label: condition.config(fidelity) for condition in item.conditions}
         digests = {label: digest(config) for label, config in configs.items()}
-        shown = {
+        shown_species = {
             condition.label: condition.species or next(iter(configs[condition.label].species))
             for condition in item.conditions
         }
         worlds = {
             label: [
-                self.worlds[key, seed, shown[label]].until(scale.steps)
+                self.worlds[key, seed, shown_species[label]].until(scale.steps)
                 for seed in scale.seeds
-                if (key, seed, shown[label]) in self.worlds
+                if (key, seed, shown_species[label]) in self.worlds
             ]
             for label, key in digests.items()
         }
         snapshots = {label: self.snapshots[key] for label, key in digests.items() if key in self.snapshots}
-        until = pl.col("step") <= scale.steps
+        is_within = pl.col("step") <= scale.steps
         frames = {
-            label: [self.frames[key, seed].filter(until) for seed in scale.seeds if (key, seed) in self.frames]
+            label: [self.frames[key, seed].filter(is_within) for seed in scale.seeds if (key, seed) in self.frames]
             for label, key in digests.items()
             if item.frames
         }
@@ -67,26 +67,26 @@ class Gathered:
         """Every world once, cut at the steps of the most demanding item, with the label of its condition."""
         labels = self._labels()
         return [
-            replace(self.worlds[need.digest, seed, species].until(steps), condition=labels[need.digest, species])
-            for need in needs(self.request)
-            for seed, steps in need.steps.items()
-            for species in need.config.species
-            if (need.digest, seed, species) in self.worlds
+            replace(self.worlds[demand.digest, seed, species].until(steps), condition=labels[demand.digest, species])
+            for demand in needs(self.request)
+            for seed, steps in demand.steps.items()
+            for species in demand.config.species
+            if (demand.digest, seed, species) in self.worlds
         ]
 
     def _labels(self) -> dict[tuple[str, str], str]:
         """A unique label for each condition and species, from the first item that shows it."""
-        found: dict[tuple[str, str], str] = {}
+        labels: dict[tuple[str, str], str] = {}
         pairs = [(item, condition) for item in self.request.items for condition in item.conditions]
         for is_shown in (True, False):
             for item, condition in pairs:
                 config = condition.config(self.request.fidelity)
-                own = choose_species(condition.species or None, config)
-                for species in [own] if is_shown else config.species:
-                    label = condition.label if species == own else f"{condition.label}: {species}"
-                    label = f"{item.name}: {label}" if label in found.values() else label
-                    found.setdefault((digest(config), species), label)
-        return found
+                shown_species = choose_species(condition.species or None, config)
+                for species in [shown_species] if is_shown else config.species:
+                    label = condition.label if species == shown_species else f"{condition.label}: {species}"
+                    label = f"{item.name}: {label}" if label in labels.values() else label
+                    labels.setdefault((digest(config), species), label)
+        return labels
 
 
 def gather(request: Request, folder: Path) -> Gathered:
@@ -100,34 +100,34 @@ def gather(request: Request, folder: Path) -> Gathered:
     faults = list(ensemble.faults)
     faults += [f"{part} is damaged: its rows are missing" for parts in ensemble.damaged.values() for part in parts]
     snapshots = _snapshots(request, ensemble.runs, faults)
-    shown = ensemble.runs_of(ensemble.worlds.values())
-    return Gathered(request, shown, ensemble.worlds, _frames(ensemble, shown), snapshots, tuple(faults))
+    runs = ensemble.runs_of(ensemble.worlds.values())
+    return Gathered(request, runs, ensemble.worlds, _frames(ensemble, runs), snapshots, tuple(faults))
 
 
 def _frames(ensemble: Ensemble, runs: Iterable[Run]) -> dict[tuple[str, int], pl.LazyFrame]:
     """The positions that an item needs of each world, from the longest run."""
     demands = {demand.digest: demand for demand in ensemble.demands}
-    found: dict[tuple[str, int], pl.LazyFrame] = {}
+    frames: dict[tuple[str, int], pl.LazyFrame] = {}
     for run in sorted(runs, key=lambda run: max([*run.manifest.steps_done, 0])):
         demand = demands[run.manifest.config_digest or ""]
         if demand.frames and demand.has_frames(run):
             for index, seed in enumerate(run.manifest.seeds):
-                found[demand.digest, seed] = run.frames().filter(pl.col("world") == index)
-    return found
+                frames[demand.digest, seed] = run.frames().filter(pl.col("world") == index)
+    return frames
 
 
 def _snapshots(request: Request, runs: Iterable[Run], faults: list[str]) -> dict[str, Snapshot]:
     """For each condition with a picture, the first state with living agents, otherwise any state."""
-    wanted = {
+    wanted_digests = {
         digest(condition.config(request.fidelity))
         for item in request.items
         if item.pictures
         for condition in item.conditions
     }
-    found: dict[str, Snapshot] = {}
+    snapshots: dict[str, Snapshot] = {}
     for run in runs:
         key = run.manifest.config_digest or ""
-        if key not in wanted or (key in found and len(found[key].x)):
+        if key not in wanted_digests or (key in snapshots and len(snapshots[key].x)):
             continue
         try:
             snapshot = load_snapshot(run.path)
@@ -135,5 +135,5 @@ def _snapshots(request: Request, runs: Iterable[Run], faults: list[str]) -> dict
             faults.append(str(error))
             continue
         if snapshot is not None:
-            found[key] = snapshot
-    return found
+            snapshots[key] = snapshot
+    return snapshots

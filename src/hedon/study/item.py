@@ -48,8 +48,8 @@ class Condition:
 
     def is_of(self, world: WorldRecord) -> bool:
         """Whether a world has exactly these settings, and its records are of this species."""
-        own = choose_species(self.species or None, self.config(world.config.fidelity))
-        return world.species == own and world.settings == _digest(self, world.config.fidelity)
+        species = choose_species(self.species or None, self.config(world.config.fidelity))
+        return world.species == species and world.settings == _digest(self, world.config.fidelity)
 
 
 @cache

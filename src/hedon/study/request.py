@@ -33,13 +33,13 @@ class Request:
 
 def needs(request: Request) -> list[Demand]:
     """The worlds that a request needs, by condition; each seed gets the steps of the most demanding item."""
-    found: dict[str, Demand] = {}
-    for item, condition in ((each, condition) for each in request.items for condition in each.conditions):
+    demands: dict[str, Demand] = {}
+    for item, condition in ((entry, condition) for entry in request.items for condition in entry.conditions):
         config = condition.config(request.fidelity)
         key = digest(config)
-        need = found.setdefault(key, Demand(config, key, founders=condition.table(request.fidelity)))
+        demand = demands.setdefault(key, Demand(config, key, founders=condition.table(request.fidelity)))
         scale = request.scale(item)
-        need.frames = math.gcd(need.frames, item.frames)  # 0 if neither needs them
+        demand.frames = math.gcd(demand.frames, item.frames)  # 0 if neither needs them
         for seed in scale.seeds:
-            need.steps[seed] = max(need.steps.get(seed, 0), scale.steps)
-    return list(found.values())
+            demand.steps[seed] = max(demand.steps.get(seed, 0), scale.steps)
+    return list(demands.values())

@@ -25,14 +25,16 @@ def world_rows(
         Columns condition (its label), seed, steps, died_out, one per measure, and until, the age up to which
         lifetimes are averaged if the living are counted [step].
     """
-    there = [(each.label, world) for each in conditions for world in inputs.worlds.get(each.label, ())]
-    until = common_age(world for _, world in there)
-    asked = at_common_age(measures, until)
+    labelled_worlds = [
+        (condition.label, world) for condition in conditions for world in inputs.worlds.get(condition.label, ())
+    ]
+    until = common_age(world for _, world in labelled_worlds)
+    adjusted = at_common_age(measures, until)
     return [
         {"condition": label, "seed": world.seed, "steps": world.last_step, "died_out": world.extinct_step is not None}
-        | measured(world, asked)
+        | measured(world, adjusted)
         | {"until": until}
-        for label, world in there
+        for label, world in labelled_worlds
     ]
 
 
@@ -44,14 +46,14 @@ def shown_interval(values: Sequence[float | None], measure: Measure | None = Non
         measure: Measure of the values, whose mean is geometric if it is compared as a ratio; None for the arithmetic
             mean.
     """
-    known = [value for value in values if value is not None]
+    recorded = [value for value in values if value is not None]
     if measure is None or not measure.ratio:
-        found = mean_interval(known)
+        interval = mean_interval(recorded)
     else:
-        logs = mean_interval([measure.scaled(value) for value in known])
+        logs = mean_interval([measure.scaled(value) for value in recorded])
         mean, low, high = (measure.unscaled(number) for number in (logs.mean, logs.low, logs.high))
-        found = Interval(mean, low, high, logs.worlds)
-    return found if found.worlds >= FOR_INTERVAL else Interval(found.mean, None, None, found.worlds)
+        interval = Interval(mean, low, high, logs.worlds)
+    return interval if interval.worlds >= FOR_INTERVAL else Interval(interval.mean, None, None, interval.worlds)
 
 
 def read_change(before: str, after: str) -> str:
@@ -89,9 +91,9 @@ def change(rows: Sequence[dict[str, Any]], measure: Measure, before: str, after:
         for seed, value in by_condition[after].items()
         if value is not None and (old := by_condition[before].get(seed)) is not None
     ]
-    found = shown_interval(changes)
-    low, high = (None, None) if measure.binary else (found.low, found.high)
-    values = {"change": found.mean, "low": low, "high": high}
+    interval = shown_interval(changes)
+    low, high = (None, None) if measure.binary else (interval.low, interval.high)
+    values = {"change": interval.mean, "low": low, "high": high}
     values |= {"change_low": min(changes, default=None), "change_high": max(changes, default=None)}
     head = {"measure": measure.name} | means | {"scale": "ratio" if measure.ratio else "difference"}
     yield head | {name: measure.unscaled(value) for name, value in values.items()} | {"seeds": len(changes)}
@@ -109,8 +111,8 @@ def missing_note(inputs: ItemInputs, conditions: Sequence[Condition], scale: Sca
     worlds = [(condition.label, world) for condition in conditions for world in inputs.worlds.get(condition.label, ())]
     short = [world.last_step for _, world in worlds if world.extinct_step is None and world.last_step < scale.steps]
     if short:
-        reach = f"{min(short):,} to {max(short):,}" if min(short) < max(short) else f"{min(short):,}"
-        parts.append(f"{len(short)} of {len(worlds)} worlds reach only {reach} of {scale.steps:,} steps.")
-    if gone := [f"{label} (seed {world.seed})" for label, world in worlds if world.extinct_step is not None]:
-        parts.append(f"Died out, and counted: {', '.join(gone)}.")
+        length = f"{min(short):,} to {max(short):,}" if min(short) < max(short) else f"{min(short):,}"
+        parts.append(f"{len(short)} of {len(worlds)} worlds reach only {length} of {scale.steps:,} steps.")
+    if extinct_labels := [f"{label} (seed {world.seed})" for label, world in worlds if world.extinct_step is not None]:
+        parts.append(f"Died out, and counted: {', '.join(extinct_labels)}.")
     return sentences(*parts)

@@ -37,13 +37,13 @@ def measure_speed(config: Config, threads: int) -> Speed:
         threads: Number of threads for which the rate is wanted.
     """
     worlds = min(threads, MOST_WORLDS)
-    count = min(TYPICAL_ALIVE, *(own.population.capacity for own in config.species.values()))
-    peopled = config.with_("population.initial_count", count).with_("birth.kappa", 0.0)
-    simulation = Simulation(peopled, range(1, worlds + 1), worlds)
+    count = min(TYPICAL_ALIVE, *(species.population.capacity for species in config.species.values()))
+    populated = config.with_("population.initial_count", count).with_("birth.kappa", 0.0)
+    simulation = Simulation(populated, range(1, worlds + 1), worlds)
     window = config.world.rollout_steps
     simulation.run(1)  # so that all memory has been touched before the measurement
-    begun = time.perf_counter()
+    started = time.perf_counter()
     simulation.run(window)
-    seconds = time.perf_counter() - begun
+    seconds = time.perf_counter() - started
     agents = sum(world.alive for world in simulation.worlds) / worlds
     return Speed(threads * window / seconds, threads, agents)

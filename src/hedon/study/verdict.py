@@ -77,23 +77,23 @@ def verdicts(worlds: Iterable[WorldRecord], claims: Iterable[Claim | Order]) -> 
         worlds: Worlds of any conditions.
         claims: Claims about one condition or two.
     """
-    groups, asked = by_condition(worlds), list(claims)
-    found = [
+    groups, claim_list = by_condition(worlds), list(claims)
+    single_verdicts = [
         judge(claim, name, group)
         for name, group in groups.items()
-        for claim in asked
+        for claim in claim_list
         if isinstance(claim, Claim) and claim.condition.is_of(group[0])
     ]
-    pairs = [
+    pair_verdicts = [
         judge_order(order, first, second)
-        for order in asked
+        for order in claim_list
         if isinstance(order, Order)
         for first, second in product(groups.values(), repeat=2)
         if order.first.is_of(first[0])
         and order.second.is_of(second[0])
         and first[0].config.fidelity == second[0].config.fidelity
     ]
-    return found + pairs
+    return single_verdicts + pair_verdicts
 
 
 def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdict:
@@ -106,20 +106,20 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
     """
     if claim.over_worlds == "extinction":
         return _judge_extinction(claim, condition, worlds)
-    used, shortfall, remarks = _asked(claim, worlds)
-    figures = _figures(claim, used)
-    found = estimate(claim, figures, used)
-    name = found.verdict or place(found.low, found.high, claim.low, claim.high)
-    why = found.reason or (CROSSES if name == UNDECIDED and len(figures) else "")
+    used_worlds, shortfall, remarks = _asked(claim, worlds)
+    values = _figures(claim, used_worlds)
+    result = estimate(claim, values, used_worlds)
+    name = result.verdict or place(result.low, result.high, claim.low, claim.high)
+    reason = result.reason or (CROSSES if name == UNDECIDED and len(values) else "")
     if claim.over_worlds == "setting":
         remarks = []
-    elif len(figures) < FOR_FULL_LENGTH or shortfall:
-        few = TOO_FEW if len(figures) < FOR_FULL_LENGTH else ""
-        name, why = UNDECIDED, "; ".join(filter(None, (few, shortfall)))
+    elif len(values) < FOR_FULL_LENGTH or shortfall:
+        too_few = TOO_FEW if len(values) < FOR_FULL_LENGTH else ""
+        name, reason = UNDECIDED, "; ".join(filter(None, (too_few, shortfall)))
     p, against = math.nan, _UNTESTABLE.get(claim.over_worlds, NO_COUNT)
     if claim.over_worlds == "share":
-        p, against = _against_reported(claim, int(np.count_nonzero(figures > 0)), len(figures), 0)
-    return _verdict(claim, condition, name, found, p, against, len(figures), [why, *remarks])
+        p, against = _against_reported(claim, int(np.count_nonzero(values > 0)), len(values), 0)
+    return _verdict(claim, condition, name, result, p, against, len(values), [reason, *remarks])
 
 
 def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[WorldRecord]) -> Verdict:
@@ -132,19 +132,19 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
     """
     parts, remarks, shortfalls = [], [], []
     for worlds in (first, second):
-        used, shortfall, said = _asked(order, worlds)
-        parts.append(_figures(order, used))
-        remarks += [f"{worlds[0].condition}: {remark}" for remark in said]
+        used_worlds, shortfall, world_remarks = _asked(order, worlds)
+        parts.append(_figures(order, used_worlds))
+        remarks += [f"{worlds[0].condition}: {remark}" for remark in world_remarks]
         shortfalls += [f"{worlds[0].condition}: {shortfall}"] if shortfall else []
     fewest = min(map(len, parts))
     value, low, high = compare(order.comparison, parts[0], parts[1], order.level) if fewest > 1 else (math.nan,) * 3
     name = place(low, high, order.low, order.high)
-    why = CROSSES if name == UNDECIDED else ""
+    reason = CROSSES if name == UNDECIDED else ""
     if fewest < FOR_FULL_LENGTH or shortfalls:
-        name, why = UNDECIDED, "; ".join([*([TOO_FEW] if fewest < FOR_FULL_LENGTH else []), *shortfalls])
+        name, reason = UNDECIDED, "; ".join([*([TOO_FEW] if fewest < FOR_FULL_LENGTH else []), *shortfalls])
     condition = f"{first[0].condition} against {second[0].condition}"
-    found = ClaimEstimate(value, low, high)
-    return _verdict(order, condition, name, found, math.nan, NO_SPREAD, sum(map(len, parts)), [why, *remarks])
+    result = ClaimEstimate(value, low, high)
+    return _verdict(order, condition, name, result, math.nan, NO_SPREAD, sum(map(len, parts)), [reason, *remarks])
 
 
 def place(low: float, high: float, region_low: float, region_high: float) -> str:
@@ -168,19 +168,19 @@ def place(low: float, high: float, region_low: float, region_high: float) -> str
 
 def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdict:
     """Uses all worlds, however long; those whose records end before the step are censored there."""
-    found = world_extinction(worlds, claim.steps)
-    name = place(found.low, found.high, claim.low, claim.high) if found.worlds else UNDECIDED
-    unknown = found.worlds - found.extinct - found.followed
+    extinction = world_extinction(worlds, claim.steps)
+    name = place(extinction.low, extinction.high, claim.low, claim.high) if extinction.worlds else UNDECIDED
+    unknown = extinction.worlds - extinction.extinct - extinction.followed
     reasons = [CROSSES if name == UNDECIDED else ""]
-    if found.worlds < FOR_FULL_LENGTH:
+    if extinction.worlds < FOR_FULL_LENGTH:
         name, reasons = UNDECIDED, [TOO_FEW]
     if unknown:
-        reasons.append(f"{unknown} of {found.worlds} worlds live and end before step {claim.steps:,}")
-    if unknown and not found.followed:
-        reasons.append(f"the share is that by step {found.known_until:,.0f}")
-    p, against = _against_reported(claim, found.extinct, found.worlds, unknown)
-    figure = ClaimEstimate(found.share, found.low, found.high)
-    return _verdict(claim, condition, name, figure, p, against, found.worlds, reasons)
+        reasons.append(f"{unknown} of {extinction.worlds} worlds live and end before step {claim.steps:,}")
+    if unknown and not extinction.followed:
+        reasons.append(f"the share is that by step {extinction.known_until:,.0f}")
+    p, against = _against_reported(claim, extinction.extinct, extinction.worlds, unknown)
+    share_estimate = ClaimEstimate(extinction.share, extinction.low, extinction.high)
+    return _verdict(claim, condition, name, share_estimate, p, against, extinction.worlds, reasons)
 
 
 def _asked(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:
@@ -191,43 +191,43 @@ def _asked(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[Wo
     """
     steps, remarks, shortfall = claim.steps, list[str](), ""
     living = [world for world in worlds if world.extinct_step is None]
-    if gone := len(worlds) - len(living):
-        remarks.append(f"{gone} extinct left out")
+    if extinct_count := len(worlds) - len(living):
+        remarks.append(f"{extinct_count} extinct left out")
     if claim.together:
-        if lone := sum(world.apart_step is not None for world in living):
+        if apart_count := sum(world.apart_step is not None for world in living):
             living = [world for world in living if world.apart_step is None]
-            remarks.append(f"{lone} left out where another species died out")
+            remarks.append(f"{apart_count} left out where another species died out")
         remarks.append(_lasting(worlds, steps))
     long_enough = [world for world in living if world.last_step >= steps]
     if living and not long_enough:
         shortfall = f"the worlds reach {max(world.last_step for world in living):,} of {steps:,} steps"
-    elif short := len(living) - len(long_enough):
-        remarks.append(f"{short} shorter left out")
+    elif short_count := len(living) - len(long_enough):
+        remarks.append(f"{short_count} shorter left out")
     return long_enough or living, shortfall, remarks
 
 
 def _lasting(worlds: Sequence[WorldRecord], steps: int) -> str:
     """The share of all worlds, including those left out, that keeps every species; the claim is about this share."""
-    found = species_loss(worlds, steps)
-    share, low, high = (f"{100 * (1 - part):.0f}" for part in (found.share, found.high, found.low))
+    loss = species_loss(worlds, steps)
+    share, low, high = (f"{100 * (1 - part):.0f}" for part in (loss.share, loss.high, loss.low))
     return (
-        f"every species lasts to step {found.known_until:,.0f} in {share} % ({low} … {high}) of {found.worlds} worlds "
+        f"every species lasts to step {loss.known_until:,.0f} in {share} % ({low} … {high}) of {loss.worlds} worlds "
         "(Kaplan and Meier)"
     )
 
 
 def _figures(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> NDArray[np.float64]:
     """The figures of the worlds that have one, (n,)."""
-    return np.array([figure for world in worlds if (figure := claim.measure(world)) is not None], np.float64)
+    return np.array([value for world in worlds if (value := claim.measure(world)) is not None], np.float64)
 
 
-def _against_reported(claim: Claim, count: int, of: int, unknown: int) -> tuple[float, str]:
+def _against_reported(claim: Claim, count: int, total: int, unknown: int) -> tuple[float, str]:
     """Answers the second question for a share; worlds of unknown fate get the outcome that gives the largest p."""
     if claim.reported_count is None:
         return math.nan, NO_COUNT
-    if not of:
+    if not total:
         return math.nan, ""
-    p = max(fisher_mid_p(count + more, of, *claim.reported_count) for more in range(unknown + 1))
+    p = max(fisher_mid_p(count + extra, total, *claim.reported_count) for extra in range(unknown + 1))
     return p, DIFFERS if p <= LEVEL else NOT_SHOWN
 
 
@@ -235,7 +235,7 @@ def _verdict(
     claim: Claim | Order,
     condition: str,
     name: str,
-    found: ClaimEstimate,
+    result: ClaimEstimate,
     p: float,
     against: str,
     worlds: int,
@@ -245,9 +245,9 @@ def _verdict(
         claim.name,
         condition,
         name,
-        found.value,
-        found.low,
-        found.high,
+        result.value,
+        result.low,
+        result.high,
         claim.reported,
         p,
         against,

@@ -27,5 +27,5 @@ def verdict(conditions: Conditions, claims: Iterable[Claim | Order] | None = Non
     """
     if claims is None:
         claims = (claim for study in installed()[0].values() for claim in study.claims)
-    found = verdicts((world for worlds in conditions.values() for world in worlds), claims)
-    return [make_table("verdict", "Claims about these conditions", [asdict(row) for row in found], _NOTE)]
+    judged = verdicts((world for worlds in conditions.values() for world in worlds), claims)
+    return [make_table("verdict", "Claims about these conditions", [asdict(row) for row in judged], _NOTE)]
