@@ -99,14 +99,14 @@ def make_conditions(loader: Loader, settings: Sequence[Settings]) -> Conditions:
         settings: Values of the factors of each condition.
     """
     groups: dict[str, list[int]] = {}
-    for index, each in enumerate(settings):
-        groups.setdefault(repr(list(_shaping(each).items())), []).append(index)
+    for index, combination in enumerate(settings):
+        groups.setdefault(repr(list(_shaping(combination).items())), []).append(index)
     found: dict[int, SweepCondition] = {}
     invalid: dict[int, ConfigError] = {}
     bases: dict[str, Base] = {}
     for group in groups.values():
-        made = _by_values(loader, settings, group) or _one_by_one(loader, settings, group)
-        for index, result, base in made:
+        results = _by_values(loader, settings, group) or _one_by_one(loader, settings, group)
+        for index, result, base in results:
             if isinstance(result, ConfigError) or base is None:
                 assert isinstance(result, ConfigError)
                 invalid[index] = result
@@ -150,26 +150,28 @@ def _by_values(loader: Loader, settings: Sequence[Settings], group: Sequence[int
     except ConfigError:
         return []
     places = {name: tuple(_places(plan.config, name)) for name in names}
-    every = [place for own in places.values() for place in own]
-    if not all(places.values()) or len(set(every)) < len(every):
+    all_places = [place for own in places.values() for place in own]
+    if not all(places.values()) or len(set(all_places)) < len(all_places):
         return []
-    base, prints = _base(plan, places), Fingerprint(plan.config)
-    made: list[tuple[int, SweepCondition | ConfigError, Base | None]] = []
-    whole: dict[int, Config] = {}
+    base, fingerprint = _base(plan, places), Fingerprint(plan.config)
+    results: list[tuple[int, SweepCondition | ConfigError, Base | None]] = []
+    configs: dict[int, Config] = {}
     for index in group:
         own = settings[index]
         try:
             config = rebuild(plan.config, changes(places, own), "")
         except ConfigError as error:
-            made.append((index, ConfigError(loader.place(own), error.problems), None))
+            results.append((index, ConfigError(loader.place(own), error.problems), None))
             continue
-        if not whole or index == group[-1]:
-            whole[index] = config
-        values = {place: value_at(config, place) for place in every}
-        made.append((index, SweepCondition(prints.digest(values)[:DIGITS], base.digest, own), base))
-    first = next((index for index, _, base in made if base is None), None)
-    good = all(_loads_as(loader, settings[index], config) for index, config in whole.items())
-    return made if good and (first is None or _loads_as(loader, settings[first], None)) else []
+        if not configs or index == group[-1]:
+            configs[index] = config
+        values = {place: value_at(config, place) for place in all_places}
+        results.append((index, SweepCondition(fingerprint.digest(values)[:DIGITS], base.digest, own), base))
+    first_invalid = next((index for index, _, base in results if base is None), None)
+    is_consistent = all(_loads_as(loader, settings[index], config) for index, config in configs.items())
+    return (
+        results if is_consistent and (first_invalid is None or _loads_as(loader, settings[first_invalid], None)) else []
+    )
 
 
 def _loads_as(loader: Loader, settings: Settings, config: Config | None) -> bool:
@@ -186,8 +188,10 @@ def _base(plan: RunPlan, places: Mapping[str, tuple[str, ...]]) -> Base:
 
 def _places(config: Config, name: str) -> Iterator[str]:
     """The complete paths that a factor's name stands for: as in a config, `birth.kappa` means all species."""
-    known = {path for path, _, _ in leaves(config) if changes_worlds(path)}
-    paths = [f"species.{each}.{name}" for each in config.species] if name.partition(".")[0] in PER_SPECIES else [name]
+    valid_paths = {path for path, _, _ in leaves(config) if changes_worlds(path)}
+    paths = (
+        [f"species.{species}.{name}" for species in config.species] if name.partition(".")[0] in PER_SPECIES else [name]
+    )
     if name.startswith(f"food.{EVERY}."):
         paths = [name.replace(EVERY, kind, 1) for kind in config.food]
-    return (path for path in paths if path in known)
+    return (path for path in paths if path in valid_paths)

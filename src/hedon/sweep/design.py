@@ -40,18 +40,18 @@ def all_settings(factors: Sequence[Factor], design: Design) -> list[Settings]:
         The values of each combination; one empty combination if there are no factors.
     """
     groups = [[{}]]
-    taken = {name for group in design.zipped for name in group}
+    zipped_names = {name for group in design.zipped for name in group}
     by_name = {factor.name: factor for factor in factors}
     for factor in factors:
         group = next((group for group in design.zipped if factor.name == group[0]), None)
         if group is not None:
             rows = zip(*(by_name[name].values for name in group), strict=True)
             groups.append([dict(zip(group, row, strict=True)) for row in rows])
-        elif factor.values and factor.name not in taken:
+        elif factor.values and factor.name not in zipped_names:
             groups.append([{factor.name: value} for value in factor.values])
-    drawn = [factor for factor in factors if factor.drawn]
-    if drawn:
-        groups.append(_draw(drawn, design))
+    drawn_factors = [factor for factor in factors if factor.drawn]
+    if drawn_factors:
+        groups.append(_draw(drawn_factors, design))
     names = [factor.name for factor in factors]
     combined = [{name: value for part in parts for name, value in part.items()} for parts in product(*groups)]
     return [{name: settings[name] for name in names} for settings in combined]

@@ -87,8 +87,8 @@ def _listed(name: str, place: str, values: Any) -> Factor | Problem:
         if value in values[:i]:
             return Problem(place, "appears twice in the list", format_value(value))
         if name in NAMED and value not in NAMED[name]:
-            near = nearest(value, NAMED[name]) if isinstance(value, str) else None
-            return Problem(f"{place}[{i}]", f"must be one of {', '.join(NAMED[name])}", format_value(value), near)
+            suggestion = nearest(value, NAMED[name]) if isinstance(value, str) else None
+            return Problem(f"{place}[{i}]", f"must be one of {', '.join(NAMED[name])}", format_value(value), suggestion)
         if isinstance(value, dict):
             return Problem(f"{place}[{i}]", "must be the value of one setting: vary each setting by itself", "a table")
     return Factor(name, tuple(values))
@@ -96,14 +96,19 @@ def _listed(name: str, place: str, values: Any) -> Factor | Problem:
 
 def _ranged(name: str, place: str, table: dict[str, Any], *, log: bool) -> Factor | Problem:
     key = "log" if log else "range"
-    ends, count = table[key], table.get("count")
+    bounds, count = table[key], table.get("count")
     if name in NAMED:
-        return Problem(place, "has names, not numbers: give a list", format_value(ends))
-    if not isinstance(ends, list) or len(ends) != 2 or not all(map(_is_number, ends)) or not ends[0] < ends[1]:
-        return Problem(f"{place}.{key}", "must be two finite numbers, the smaller first", format_value(ends))
-    if log and ends[0] <= 0:
-        return Problem(f"{place}.log", "must be above 0", format_value(ends))
-    factor = Factor(name, (), float(ends[0]), float(ends[1]), log, all(isinstance(end, int) for end in ends))
+        return Problem(place, "has names, not numbers: give a list", format_value(bounds))
+    if (
+        not isinstance(bounds, list)
+        or len(bounds) != 2
+        or not all(map(_is_number, bounds))
+        or not bounds[0] < bounds[1]
+    ):
+        return Problem(f"{place}.{key}", "must be two finite numbers, the smaller first", format_value(bounds))
+    if log and bounds[0] <= 0:
+        return Problem(f"{place}.log", "must be above 0", format_value(bounds))
+    factor = Factor(name, (), float(bounds[0]), float(bounds[1]), log, all(isinstance(end, int) for end in bounds))
     if count is None:
         return factor
     if not isinstance(count, int) or isinstance(count, bool) or not 2 <= count <= MOST_VALUES:

@@ -41,9 +41,9 @@ def read_sweep(path: Path | str, *, skip_invalid: bool = False) -> SweepFile:
         for key in tables
         if key not in KEYS
     ]
-    found = [read_factor(name, said) for name, said in _flat(_table(tables, "factor", problems), stop=True)]
-    factors = tuple(each for each in found if isinstance(each, Factor))
-    problems += [each for each in found if isinstance(each, Problem)]
+    parsed = [read_factor(name, value) for name, value in _flat(_table(tables, "factor", problems), keep_factors=True)]
+    factors = tuple(each for each in parsed if isinstance(each, Factor))
+    problems += [each for each in parsed if isinstance(each, Problem)]
     design = _design(_table(tables, "design", problems), factors, problems)
     steps = _whole(tables, "steps", 1, MAX_STEPS, problems)
     worlds = _whole(tables, "worlds", 1, MAX_WORLDS, problems, WORLDS)
@@ -60,11 +60,11 @@ def read_sweep(path: Path | str, *, skip_invalid: bool = False) -> SweepFile:
         raise ConfigError(origin, problems)
     settings = all_settings(factors, design)
     if len(settings) > MOST_CONDITIONS:
-        many = Problem("factor", f"gives {len(settings):,} settings: at most {MOST_CONDITIONS:,} are allowed")
-        raise ConfigError(origin, [many])
-    made = make_conditions(Loader(path, base, tables.get("fidelity"), fixed), settings)
-    if made.invalid and not (skip_invalid and made.found):
-        raise _refusal(origin, made.invalid, len(settings))
+        problem = Problem("factor", f"gives {len(settings):,} settings: at most {MOST_CONDITIONS:,} are allowed")
+        raise ConfigError(origin, [problem])
+    conditions = make_conditions(Loader(path, base, tables.get("fidelity"), fixed), settings)
+    if conditions.invalid and not (skip_invalid and conditions.found):
+        raise _refusal(origin, conditions.invalid, len(settings))
     plan = SweepPlan(
         name=path.stem,
         steps=steps,
@@ -74,21 +74,21 @@ def read_sweep(path: Path | str, *, skip_invalid: bool = False) -> SweepFile:
         order_seed=design.seed,
         factors=tuple(factor.name for factor in factors),
         ranged=tuple(factor.name for factor in factors if factor.drawn),
-        places={name: each.places for name, each in made.bases.items()},
-        conditions=made.found,
+        places={name: each.places for name, each in conditions.bases.items()},
+        conditions=conditions.found,
     )
-    return SweepFile(plan, made.bases, worlds, tuple(map(str, made.invalid)))
+    return SweepFile(plan, conditions.bases, worlds, tuple(map(str, conditions.invalid)))
 
 
 def _refusal(origin: str, invalid: Sequence[ConfigError], count: int) -> ConfigError:
     """The error for invalid conditions; if there is only one, its own error."""
     if len(invalid) == 1 == count:
         return invalid[0]
-    if len(invalid) == count and all(each.problems == invalid[0].problems for each in invalid):
+    if len(invalid) == count and all(fault.problems == invalid[0].problems for fault in invalid):
         return ConfigError(origin, invalid[0].problems)  # for example a misspelled name, whatever the values
-    listed = [Problem("", str(error).removeprefix(f"{origin}, ")) for error in invalid]
-    what = f"{len(invalid):,} of {count:,} settings cannot be; --skip-invalid leaves them out"
-    return ConfigError(origin, [Problem("factor", what), *listed])
+    problems = [Problem("", str(error).removeprefix(f"{origin}, ")) for error in invalid]
+    message = f"{len(invalid):,} of {count:,} settings cannot be; --skip-invalid leaves them out"
+    return ConfigError(origin, [Problem("factor", message), *problems])
 
 
 def _table(tables: dict[str, Any], key: str, problems: list[Problem]) -> dict[str, Any]:
@@ -99,12 +99,12 @@ def _table(tables: dict[str, Any], key: str, problems: list[Problem]) -> dict[st
     return {}
 
 
-def _flat(table: dict[str, Any], before: str = "", *, stop: bool = False) -> Iterator[tuple[str, Any]]:
-    """Values by path, for quoted paths and nested tables alike; with `stop`, tables that are factors stay whole."""
+def _flat(table: dict[str, Any], prefix: str = "", *, keep_factors: bool = False) -> Iterator[tuple[str, Any]]:
+    """Values by path, for quoted paths and nested tables alike; `keep_factors` leaves tables that are factors whole."""
     for name, value in table.items():
-        path = f"{before}.{name}" if before else name
-        if isinstance(value, dict) and not (stop and {"values", "range", "log", "count"} & set(value)):
-            yield from _flat(value, path, stop=stop)
+        path = f"{prefix}.{name}" if prefix else name
+        if isinstance(value, dict) and not (keep_factors and {"values", "range", "log", "count"} & set(value)):
+            yield from _flat(value, path, keep_factors=keep_factors)
         else:
             yield path, value
 
@@ -114,9 +114,9 @@ def _base(tables: dict[str, Any], factors: Sequence[Factor], problems: list[Prob
     if not isinstance(base, str) or not base:
         problems.append(Problem("base", "must be the name of a preset, or of a file (.toml)", format_value(base)))
     if fidelity is not None and fidelity not in FIDELITIES:
-        near = nearest(fidelity, FIDELITIES) if isinstance(fidelity, str) else None
+        suggestion = nearest(fidelity, FIDELITIES) if isinstance(fidelity, str) else None
         message = f"must be one of {', '.join(FIDELITIES)}"
-        problems.append(Problem("fidelity", message, format_value(fidelity), near))
+        problems.append(Problem("fidelity", message, format_value(fidelity), suggestion))
     for name, key in ((PRESET, "base"), (FIDELITY, "fidelity")):
         if key in tables and any(factor.name == name for factor in factors):
             problems.append(Problem(key, f"cannot be set beside the factor {name}, which chooses it: leave one out"))
@@ -126,18 +126,18 @@ def _base(tables: dict[str, Any], factors: Sequence[Factor], problems: list[Prob
 def _design(table: dict[str, Any], factors: Sequence[Factor], problems: list[Problem]) -> Design:
     for key in table:
         if key not in DESIGN:
-            said = f"is not a part of a design ({', '.join(DESIGN)})"
-            problems.append(Problem(f"design.{key}", said, nearest=nearest(key, DESIGN)))
+            message = f"is not a part of a design ({', '.join(DESIGN)})"
+            problems.append(Problem(f"design.{key}", message, nearest=nearest(key, DESIGN)))
     draw = table.get("draw", DRAWS[-1])
     if draw not in DRAWS:
-        near = nearest(draw, DRAWS) if isinstance(draw, str) else None
-        problems.append(Problem("design.draw", f"must be one of {', '.join(DRAWS)}", format_value(draw), near))
-    drawn = [factor.name for factor in factors if factor.drawn]
-    if drawn and "points" not in table:
-        problems.append(Problem("design.points", f"is missing: how many values to draw for {', '.join(drawn)}"))
-    elif not drawn and "points" in table:
+        suggestion = nearest(draw, DRAWS) if isinstance(draw, str) else None
+        problems.append(Problem("design.draw", f"must be one of {', '.join(DRAWS)}", format_value(draw), suggestion))
+    drawn_names = [factor.name for factor in factors if factor.drawn]
+    if drawn_names and "points" not in table:
+        problems.append(Problem("design.points", f"is missing: how many values to draw for {', '.join(drawn_names)}"))
+    elif not drawn_names and "points" in table:
         problems.append(Problem("design.points", "has nothing to draw: every factor has its values"))
-    points = _whole(table, "points", 1, MOST_CONDITIONS, problems, 1, "design.") if drawn else 0
+    points = _whole(table, "points", 1, MOST_CONDITIONS, problems, 1, "design.") if drawn_names else 0
     seed = _whole(table, "seed", 0, 2**32 - 1, problems, 1, "design.")
     return Design(draw, points, seed, _zipped(table.get("zip", []), factors, problems))
 
@@ -152,16 +152,18 @@ def _zipped(groups: Any, factors: Sequence[Factor], problems: list[Problem]) -> 
     for group in groups:
         for name in group:
             if name not in counts:
-                near = nearest(name, counts) if isinstance(name, str) else None
-                problems.append(Problem("design.zip", "is not a factor with values", format_value(name), near))
+                suggestion = nearest(name, counts) if isinstance(name, str) else None
+                problems.append(Problem("design.zip", "is not a factor with values", format_value(name), suggestion))
             elif name in seen:
                 problems.append(Problem("design.zip", "is zipped twice", format_value(name)))
             else:
                 seen.add(name)
         lengths = {name: counts[name] for name in group if name in seen}
         if len(set(lengths.values())) > 1:
-            said = ", ".join(f"{name} {count}" for name, count in lengths.items())
-            problems.append(Problem("design.zip", f"needs equally many values of each factor of a group, not {said}"))
+            length_text = ", ".join(f"{name} {count}" for name, count in lengths.items())
+            problems.append(
+                Problem("design.zip", f"needs equally many values of each factor of a group, not {length_text}")
+            )
     # Each group is sorted in the order of the factors, so that its first factor represents it.
     order = list(counts)
     return tuple(tuple(sorted(group, key=order.index)) for group in groups if set(group) <= seen)
@@ -174,15 +176,15 @@ def _whole(
     high: int,
     problems: list[Problem],
     default: int | None = None,
-    before: str = "",
+    prefix: str = "",
 ) -> int:
     value = table.get(key, default)
     if isinstance(value, int) and not isinstance(value, bool) and low <= value <= high:
         return value
-    said = "is missing: it" if value is None else ""
+    opening = "is missing: it" if value is None else ""
     text = None if value is None else format_value(value)
-    message = f"{said} must be a whole number from {low:,} to {high:,}".strip()
-    problems.append(Problem(before + key, message, text))
+    message = f"{opening} must be a whole number from {low:,} to {high:,}".strip()
+    problems.append(Problem(prefix + key, message, text))
     return low
 
 
@@ -202,8 +204,8 @@ def _keep(value: Any, problems: list[Problem]) -> tuple[str, ...]:
     if not isinstance(value, list):
         problems.append(Problem("keep", f"must be a list of {', '.join(KEEP)}", format_value(value)))
         return ()
-    for each in value:
-        if each not in KEEP:
-            near = nearest(each, KEEP) if isinstance(each, str) else None
-            problems.append(Problem("keep", f"must be a list of {', '.join(KEEP)}", format_value(each), near))
+    for name in value:
+        if name not in KEEP:
+            suggestion = nearest(name, KEEP) if isinstance(name, str) else None
+            problems.append(Problem("keep", f"must be a list of {', '.join(KEEP)}", format_value(name), suggestion))
     return tuple(value)
