@@ -73,8 +73,8 @@ class Lines:
     @property
     def variation(self) -> Floats:
         """The integral of p(1 − p) over the generations of each interval, shape (times − 1,)."""
-        spread = self.share * (1 - self.share)
-        return (spread[1:] + spread[:-1]) / 2 * np.diff(self.generation)
+        variance = self.share * (1 - self.share)
+        return (variance[1:] + variance[:-1]) / 2 * np.diff(self.generation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,9 +116,9 @@ class Contest:
             counts[i, : len(lines.step)] = lines.count
         worlds = len(self.lines)
         draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, np.random.default_rng(_SEED))])
-        summed = np.einsum("rw,wtg->rtg", draws, counts)
+        totals = np.einsum("rw,wtg->rtg", draws, counts)
         with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.log(summed[..., 0] / summed[..., 1])
+            ratio = np.log(totals[..., 0] / totals[..., 1])
         return step, ratio[0], world_interval(ratio[1:], worlds)
 
 
@@ -137,23 +137,23 @@ def world_lines(agents: pl.DataFrame, seed: int, member: Floats, steps: int) -> 
     counts, generations, moments = [], [], []
     living = founders
     for step in np.linspace(0, steps, TIMES).round().astype(np.int64):
-        now = living_at(tree, int(step))
-        if not len(now):
+        alive = living_at(tree, int(step))
+        if not len(alive):
             break
-        living = now
-        mine = float(member[living].sum())
-        counts.append((mine, len(living) - mine))
+        living = alive
+        first_count = float(member[living].sum())
+        counts.append((first_count, len(living) - first_count))
         generations.append(generation[living].mean())
         moments.append(step)
-    last = np.zeros(tree.size)
-    last[living] = 1.0
+    alive_at_end = np.zeros(tree.size)
+    alive_at_end[living] = 1.0
     return Lines(
         seed=seed,
         step=np.array(moments),
         count=np.array(counts, np.float64),
         generation=np.array(generations),
         first=member[founders],
-        descendants=shares_of_descent(tree, agents, last)[founders],
+        descendants=shares_of_descent(tree, agents, alive_at_end)[founders],
         ended=len(moments) < TIMES,
     )
 
@@ -217,19 +217,19 @@ def estimate(groups: tuple[str, str], lines: Sequence[Lines], steps: int) -> Con
     """
     rng = np.random.default_rng(_SEED)
     worlds = len(lines)
-    change = np.concatenate([np.diff(each.share) for each in lines])
-    variation = np.concatenate([each.variation for each in lines])
-    ends = np.array([each.share[-1] for each in lines])
+    change = np.concatenate([np.diff(world_line.share) for world_line in lines])
+    variation = np.concatenate([world_line.variation for world_line in lines])
+    end_shares = np.array([world_line.share[-1] for world_line in lines])
     return Contest(
         groups=groups,
         lines=tuple(lines),
         selection=diffusion_strength(change, variation, worlds),
-        share=share_estimate(ends),
-        start=float(np.mean([each.share[0] for each in lines])),
+        share=share_estimate(end_shares),
+        start=float(np.mean([world_line.share[0] for world_line in lines])),
         p=_exchange(lines, rng),
-        fixed=int((ends == 1).sum()),
-        lost=int((ends == 0).sum()),
-        generations=float(np.mean([each.generation[-1] for each in lines])),
+        fixed=int((end_shares == 1).sum()),
+        lost=int((end_shares == 0).sum()),
+        generations=float(np.mean([world_line.generation[-1] for world_line in lines])),
         steps=steps,
     )
 
@@ -245,14 +245,17 @@ def points_of(founders: Founders, groups: tuple[str, str], species: str) -> tupl
     Raises:
         AssayError: A group has several rows, or lacks a gene of the other.
     """
-    own = founders.of_species(species)
-    rows = [[i for i, group in enumerate(own.group) if group == name] for name in groups]
-    if any(len(mine) != 1 for mine in rows) or np.isnan(own.values).any():
+    species_founders = founders.of_species(species)
+    rows = [[i for i, group in enumerate(species_founders.group) if group == name] for name in groups]
+    if any(len(indices) != 1 for indices in rows) or np.isnan(species_founders.values).any():
         raise AssayError(
             "with birth.mating = pairs a child has genes of two parents: give two points that name the same genes, "
             "such as see_agent=0 and see_agent=5"
         )
-    first, second = (dict(zip(own.genes, map(float, own.values[mine[0]]), strict=True)) for mine in rows)
+    first, second = (
+        dict(zip(species_founders.genes, map(float, species_founders.values[indices[0]]), strict=True))
+        for indices in rows
+    )
     return first, second
 
 
@@ -260,22 +263,22 @@ def _lines(world: WorldRecord, founders: Founders, groups: tuple[str, str], step
     if world.own.birth.mating == "pairs":
         points = points_of(founders, groups, world.species)
         return world_lines(world.agents, world.seed, by_gene(world.agents, *points), steps)
-    before = 0  # IDs of founders follow the order of species
+    first_id = 0  # IDs of founders follow the order of species
     for name, species in world.config.species.items():
         if name == world.species:
             break
-        before += species.population.initial_count
+        first_id += species.population.initial_count
     first = [name == groups[0] for name in founders.groups(world.seed, world.own.population.initial_count)]
-    return world_lines(world.agents, world.seed, by_descent(world.agents, first, before), steps)
+    return world_lines(world.agents, world.seed, by_descent(world.agents, first, first_id), steps)
 
 
 def _exchange(lines: Sequence[Lines], rng: np.random.Generator) -> float:
     """The p value of the mean change of the share if the assignment of founders to groups does not matter."""
     observed, null = 0.0, np.zeros(PERMUTATIONS)
-    for each in lines:
-        weights = each.descendants / each.descendants.sum()
-        expected = each.first.mean()
-        observed += float(weights @ each.first) - expected
-        labels = rng.permuted(np.tile(each.first, (PERMUTATIONS, 1)), axis=1)
+    for world_line in lines:
+        weights = world_line.descendants / world_line.descendants.sum()
+        expected = world_line.first.mean()
+        observed += float(weights @ world_line.first) - expected
+        labels = rng.permuted(np.tile(world_line.first, (PERMUTATIONS, 1)), axis=1)
         null += labels @ weights - expected
     return float(chance(np.array(observed), null))

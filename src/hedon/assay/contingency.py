@@ -99,10 +99,10 @@ def measures_of(world: WorldRecord) -> dict[str, list[Measure]]:
 
     The result contains the measures of each comparison, by its name.
     """
-    found = {f"{gene}_mean": [gene_mean(gene)] for gene in world.reward_names}
+    measures = {f"{gene}_mean": [gene_mean(gene)] for gene in world.reward_names}
     if world.neutral_names:
-        found[NEUTRAL] = [gene_mean(gene) for gene in world.neutral_names]
-    return found | {name: [MEASURES[name]] for name in FATES if MEASURES[name].applies(world)}
+        measures[NEUTRAL] = [gene_mean(gene) for gene in world.neutral_names]
+    return measures | {name: [MEASURES[name]] for name in FATES if MEASURES[name].applies(world)}
 
 
 def lineages_since(step: int) -> Measure:
@@ -125,11 +125,11 @@ def descent_shares(world: WorldRecord, step: int) -> pl.DataFrame:
     Returns:
         Columns agent_id and share, by agent_id. The shares sum to 1, or are all 0 in an extinct world.
     """
-    lived = pl.col("death_step").is_null() | (pl.col("death_step") > step)
+    was_alive = pl.col("death_step").is_null() | (pl.col("death_step") > step)
     old = pl.col("birth_step") <= step
     parents = [name for name in ("parent_id", "mate_id") if name in world.agents.columns]
     # Agents alive then count separately, even if one is the parent of another.
-    rows = world.agents.filter(lived | ~old).sort("agent_id")
+    rows = world.agents.filter(was_alive | ~old).sort("agent_id")
     rows = rows.with_columns(pl.when(~old).then(pl.col(parents)))
     tree = genealogy(rows)
     share = shares_of_descent(tree, rows, tree.alive.astype(np.float64)) / max(int(tree.alive.sum()), 1)
@@ -143,57 +143,60 @@ def diverged(fresh: Sample, futures: Sequence[Futures]) -> list[Divergence]:
         fresh: The fresh worlds.
         futures: Each world at a step, with its futures.
     """
-    found = []
+    results = []
     for step in sorted({past.step for past, _ in futures}):
-        mine = [sample for past, sample in futures if past.step == step]
+        samples = [sample for past, sample in futures if past.step == step]
         for species in fresh.demand.config.species:
             worlds = fresh.of_species(species)
-            before = f"{species}." if len(fresh.demand.config.species) > 1 else ""
-            groups = [each.of_species(species) for each in mine]
+            prefix = f"{species}." if len(fresh.demand.config.species) > 1 else ""
+            groups = [each.of_species(species) for each in samples]
             generation = _generation_at(step, worlds)
             for name, measures in {**measures_of(worlds[0]), LINEAGES: [lineages_since(step)]}.items():
                 values = [_values(measures, group) for group in groups]
-                found.append(_divergence(step, generation, f"{before}{name}", values, _values(measures, worlds)))
-    corrected = holm([each.p for each in found])
-    return [replace(each, p_holm=p) for each, p in zip(found, corrected, strict=True)]
+                results.append(_divergence(step, generation, f"{prefix}{name}", values, _values(measures, worlds)))
+    corrected = holm([each.p for each in results])
+    return [replace(each, p_holm=p) for each, p in zip(results, corrected, strict=True)]
 
 
 def overlaps(futures: Sequence[Futures]) -> list[Overlap]:
     """Whether the same agents have descendants in all futures, for each world that has futures."""
-    found = []
+    results = []
     for past, sample in futures:
         for species in sample.demand.config.species:
             shares = [descent_shares(world, past.step)["share"].to_numpy() for world in sample.of_species(species)]
             living = [each for each in shares if each.sum() > 0]
             if len(living) > 1:
-                found.append(overlap(past.seed, past.step, species, np.stack(living)))
-    corrected = holm([each.p for each in found])
-    return [replace(each, p_holm=p) for each, p in zip(found, corrected, strict=True)]
+                results.append(overlap(past.seed, past.step, species, np.stack(living)))
+    corrected = holm([each.p for each in results])
+    return [replace(each, p_holm=p) for each, p in zip(results, corrected, strict=True)]
 
 
 def _generation_at(step: int, worlds: Sequence[WorldRecord]) -> float:
     """The mean generation of the living at a step, over worlds; NaN if no agents were alive."""
-    then = [last_generation(world.population.filter(pl.col("step") <= step)) for world in worlds]
-    known = [each for each in then if each is not None]
-    return float(np.mean(known)) if known else math.nan
+    generations = [last_generation(world.population.filter(pl.col("step") <= step)) for world in worlds]
+    recorded = [generation for generation in generations if generation is not None]
+    return float(np.mean(recorded)) if recorded else math.nan
 
 
 def _values(measures: Sequence[Measure], worlds: Sequence[WorldRecord]) -> Floats:
     """The measures of each world that has all of them, each on its own scale, (worlds, measures)."""
-    found = []
+    rows = []
     for world in worlds:
         values = [measure.value(world) for measure in measures]
-        known = [measure.scaled(each) for measure, each in zip(measures, values, strict=True) if each is not None]
-        if len(known) == len(measures):
-            found.append(known)
-    return np.array(found, float).reshape(len(found), len(measures))
+        row = [measure.scaled(value) for measure, value in zip(measures, values, strict=True) if value is not None]
+        if len(row) == len(measures):
+            rows.append(row)
+    return np.array(rows, float).reshape(len(rows), len(measures))
 
 
 def _divergence(step: int, generation: float, name: str, futures: Sequence[Floats], fresh: Floats) -> Divergence:
     groups = [group for group in futures if len(group) >= FOR_INTERVAL]
-    enough = bool(groups) and len(fresh) >= FOR_INTERVAL
-    apart, fresh_apart = _mean_distance([group for group in futures if len(group) > 1]), _mean_distance([fresh])
-    ratio, low, high, p = distance_ratio(groups, fresh) if enough else UNKNOWN
+    sufficient = bool(groups) and len(fresh) >= FOR_INTERVAL
+    apart, fresh_apart = (
+        _mean_distance([group for group in futures if len(group) > 1]),
+        _mean_distance([fresh]),
+    )
+    ratio, low, high, p = distance_ratio(groups, fresh) if sufficient else UNKNOWN
     worlds = (len(futures), sum(map(len, futures)), len(fresh))
     return Divergence(step, generation, name, *worlds, apart, fresh_apart, ratio, low, high, p)
 
@@ -212,27 +215,30 @@ def distance_ratio(groups: Sequence[Floats], fresh: Floats) -> tuple[float, floa
         The ratio, the bounds of its 95 % interval, and the two-sided p value for equal distances; NaN if all
         values of one side are equal.
     """
-    apart, without = _mean_distance(groups), [_distances_without(group) for group in groups]
-    whole = [_mean_distance([group]) for group in groups]
+    apart, jackknife = _mean_distance(groups), [_distances_without(group) for group in groups]
+    full_distances = [_mean_distance([group]) for group in groups]
     fresh_apart = _mean_distance([fresh])
-    left_out = [apart + (each - own) / len(groups) for each, own in zip(without, whole, strict=True)]
-    every = [*left_out, _distances_without(fresh)]
-    if not (apart > 0 and fresh_apart > 0 and all((each > 0).all() for each in every)):
+    left_out = [
+        apart + (distances - full_distance) / len(groups)
+        for distances, full_distance in zip(jackknife, full_distances, strict=True)
+    ]
+    all_distances = [*left_out, _distances_without(fresh)]
+    if not (apart > 0 and fresh_apart > 0 and all((distances > 0).all() for distances in all_distances)):
         return UNKNOWN
-    variances = [(len(each) - 1) * float(np.var(np.log(each))) for each in every]
+    variances = [(len(distances) - 1) * float(np.var(np.log(distances))) for distances in all_distances]
     inner, outer = sum(variances[:-1]), variances[-1]
     freedom = sum(len(group) - 1 for group in groups)
     degrees = (inner + outer) ** 2 / (inner**2 / freedom + outer**2 / (len(fresh) - 1))
     value, error = math.log(apart / fresh_apart), math.sqrt(inner + outer)
-    reach = t_quantile(0.5 * (1.0 + LEVEL), degrees) * error
-    bounds = (math.exp(value - reach), math.exp(value + reach))
+    half_width = t_quantile(0.5 * (1.0 + LEVEL), degrees) * error
+    bounds = (math.exp(value - half_width), math.exp(value + half_width))
     return math.exp(value), *bounds, 2.0 * t_above(abs(value) / error, degrees)
 
 
 def _mean_distance(groups: Sequence[Floats]) -> float:
     """The mean distance between two values of one group, with equal weight for each group; NaN without two values."""
-    known = [group for group in groups if len(group) > 1]
-    sums = [_summed_distances(group).sum() / (len(group) * (len(group) - 1)) for group in known]
+    usable = [group for group in groups if len(group) > 1]
+    sums = [_summed_distances(group).sum() / (len(group) * (len(group) - 1)) for group in usable]
     return float(np.mean(sums)) if sums else math.nan
 
 
@@ -243,8 +249,8 @@ def _summed_distances(values: Floats) -> Floats:
 
 def _distances_without(values: Floats) -> Floats:
     """The mean distance between two values, leaving out each value in turn, (n,)."""
-    own, n = _summed_distances(values), len(values)
-    return (own.sum() - 2.0 * own) / ((n - 1) * (n - 2))
+    sums, n = _summed_distances(values), len(values)
+    return (sums.sum() - 2.0 * sums) / ((n - 1) * (n - 2))
 
 
 def overlap(past: int, step: int, species: str, shares: Floats, draws: int = DRAWS) -> Overlap:
@@ -259,12 +265,12 @@ def overlap(past: int, step: int, species: str, shares: Floats, draws: int = DRA
         draws: Number of permutations.
     """
     rng = np.random.default_rng([SEED, past, step])
-    seen = _mean_overlap(shares)
-    drawn = np.array([_mean_overlap(rng.permuted(shares, axis=1)) for _ in range(draws)])
-    p = (1 + np.count_nonzero(drawn >= seen - 1e-12)) / (1 + draws)
+    observed = _mean_overlap(shares)
+    null = np.array([_mean_overlap(rng.permuted(shares, axis=1)) for _ in range(draws)])
+    p = (1 + np.count_nonzero(null >= observed - 1e-12)) / (1 + draws)
     everywhere, somewhere = (shares > 0).all(axis=0), (shares > 0).any(axis=0)
     counts = (shares.shape[1], int(everywhere.sum()), int((~somewhere).sum()))
-    return Overlap(past, step, species, *counts, seen, float(drawn.mean()), p)
+    return Overlap(past, step, species, *counts, observed, float(null.mean()), p)
 
 
 def _mean_overlap(shares: Floats) -> float:

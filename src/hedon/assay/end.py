@@ -67,15 +67,15 @@ def read_ends(path: Path, config: Config, species: str) -> list[End]:
 
 def _run_ends(path: Path, species: str, name: str) -> list[End]:
     run = open_run(path)
-    own = species if run.columns.several else run.columns.species[0]
-    lives, rows = (by_species(table, run.columns).get(own) for table in (run.agents(), run.population()))
-    if lives is None or rows is None:
-        there = ", ".join(run.columns.species)
-        raise AssayError(f"--ends {name}: the run has no species {species} (there are {there})")
-    genes = [gene for gene in run.reward_names if lives[gene].is_not_null().any()]
+    run_species = species if run.columns.several else run.columns.species[0]
+    agents, rows = (by_species(table, run.columns).get(run_species) for table in (run.agents(), run.population()))
+    if agents is None or rows is None:
+        available = ", ".join(run.columns.species)
+        raise AssayError(f"--ends {name}: the run has no species {species} (there are {available})")
+    genes = [gene for gene in run.reward_names if agents[gene].is_not_null().any()]
     ends = []
     for world, seed in enumerate(run.manifest.seeds):
-        living = last_living(*(table.filter(pl.col("world") == world) for table in (lives, rows)))
+        living = last_living(*(table.filter(pl.col("world") == world) for table in (agents, rows)))
         means = {gene: spread["mean"] for gene, spread in weight_spreads(living, genes).items()}
         if living.height:
             ends.append(End(f"{path.name}, seed {seed}", {gene: mean or 0.0 for gene, mean in means.items()}))
@@ -84,8 +84,8 @@ def _run_ends(path: Path, species: str, name: str) -> list[End]:
 
 def _summary_ends(content: Mapping[str, Any], path: Path, species: str) -> list[End]:
     ends = []
-    for whole in content["worlds"]:
-        world = whole.get("species", {}).get(species, {}) | {"seed": whole["seed"]} if "species" in whole else whole
+    for entry in content["worlds"]:
+        world = entry.get("species", {}).get(species, {}) | {"seed": entry["seed"]} if "species" in entry else entry
         weights = {gene: spread.get("mean") for gene, spread in world.get("weights", {}).items()}
         if weights and all(isinstance(mean, float) for mean in weights.values()):
             ends.append(End(f"{path.parent.name}, seed {world['seed']}", weights))
@@ -97,22 +97,22 @@ def _study_ends(content: Mapping[str, Any], path: Path, config: Config) -> list[
     tables = content.get("tables", {})
     rows = [row for table in tables.values() for row in table.get("rows", [])]
     points: dict[tuple[str, int], dict[str, float]] = {}
-    tall = [row for row in rows if {"weight", "mean", "seed", "score"} <= row.keys()]
-    wide = [row for row in rows if {"w_food", "w_action", "seed"} <= row.keys()]
+    weight_rows = [row for row in rows if {"weight", "mean", "seed", "score"} <= row.keys()]
+    world_rows = [row for row in rows if {"w_food", "w_action", "seed"} <= row.keys()]
     kinds = list(config.food)
-    for row in _own(tall, config) or _own(wide, config):
+    for row in _own(weight_rows, config) or _own(world_rows, config):
         point = points.setdefault((_condition(row), row["seed"]), {})
         if "weight" in row:
             point[row["weight"]] = row["mean"]
         else:
             point |= {f"w_{kinds[0]}": row["w_food"], "w_action": row["w_action"]}
-    found = ((key, {gene: value for gene, value in point.items() if _known(value)}) for key, point in points.items())
-    return [End(f"{path.parent.name}, {arm}, seed {seed}", point) for (arm, seed), point in found if point]
+    recorded = ((key, {gene: value for gene, value in point.items() if _known(value)}) for key, point in points.items())
+    return [End(f"{path.parent.name}, {arm}, seed {seed}", point) for (arm, seed), point in recorded if point]
 
 
 def _own(rows: Sequence[dict[str, Any]], config: Config) -> Sequence[dict[str, Any]]:
-    own = [row for row in rows if _condition(row).split(" ")[0] in (config.name, config.preset)]
-    return own or rows
+    matching = [row for row in rows if _condition(row).split(" ")[0] in (config.name, config.preset)]
+    return matching or rows
 
 
 def _known(value: Any) -> bool:

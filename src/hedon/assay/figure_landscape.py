@@ -46,14 +46,16 @@ def _draw(figure: Figure, axes: Axes, landscape: Landscape, surface: MeasureSurf
     figure.colorbar(ScalarMappable(norm, "viridis"), ax=axes, label="relative fitness")
     best = [estimate.value for estimate in smooth.optimum]
     bars = [
-        np.nan_to_num([[max(each.value - each.low, 0.0)], [max(each.high - each.value, 0.0)]])
-        for each in smooth.optimum
+        np.nan_to_num([[max(optimum.value - optimum.low, 0.0)], [max(optimum.high - optimum.value, 0.0)]])
+        for optimum in smooth.optimum
     ]
     axes.errorbar(*best, xerr=bars[0], yerr=bars[1], fmt="*", color=VERMILION, ms=13, mec="white", label="optimum")
-    found = on_surface(ends, landscape.genes)
-    for reported, marker, label in ((True, "D", "ends that studies report"), (False, "o", "ends of runs")):
+    surface_ends = on_surface(ends, landscape.genes)
+    for is_reported, marker, label in ((True, "D", "ends that studies report"), (False, "o", "ends of runs")):
         points = [
-            (a, b) for end, (a, b) in found if end.reported == reported and x[0] <= a <= x[-1] and y[0] <= b <= y[-1]
+            (a, b)
+            for end, (a, b) in surface_ends
+            if end.reported == is_reported and x[0] <= a <= x[-1] and y[0] <= b <= y[-1]
         ]
         if points:
             axes.scatter(

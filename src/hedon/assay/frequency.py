@@ -105,9 +105,9 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     for i, start in enumerate(starts):
         for lines in worlds[start]:
             sums[i, seeds.index(lines.seed)] += _sums(lines)
-    found = tuple(_at_share(start, worlds[start], sums[i]) for i, start in enumerate(starts))
-    whole = draws @ sums.sum(axis=0)
-    change, weighted, variation, first, second = whole.T
+    at_shares = tuple(_at_share(start, worlds[start], sums[i]) for i, start in enumerate(starts))
+    totals = draws @ sums.sum(axis=0)
+    change, weighted, variation, first, second = totals.T
     with np.errstate(divide="ignore", invalid="ignore"):
         determinant = variation * second - first**2
         slope = (variation * weighted - first * change) / determinant
@@ -115,16 +115,16 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     share = np.linspace(starts[0], starts[-1], GRID)
     lines = base[:, None] + slope[:, None] * share
     low, high = world_interval(lines[1:], len(seeds))
-    within = share[(low <= 0) & (high >= 0)]
+    plausible = share[(low <= 0) & (high >= 0)]
     with np.errstate(divide="ignore", invalid="ignore"):
         crossing = -base[0] / slope[0]
-    known = starts[0] <= crossing <= starts[-1]
-    bounds = (float(within[0]), float(within[-1])) if len(within) else (np.nan, np.nan)
+    in_range = starts[0] <= crossing <= starts[-1]
+    bounds = (float(plausible[0]), float(plausible[-1])) if len(plausible) else (np.nan, np.nan)
     return Frequency(
         groups=groups,
-        shares=found,
+        shares=at_shares,
         slope=bounded(slope[0], slope[1:], len(seeds)),
-        crossing=Estimate(float(crossing) if known else np.nan, *bounds),
+        crossing=Estimate(float(crossing) if in_range else np.nan, *bounds),
         line=np.stack([share, lines[0], low, high]),
         verdict=_verdict(low, high),
     )
@@ -141,7 +141,7 @@ def _sums(lines: Lines) -> Floats:
 def _at_share(start: float, worlds: Sequence[Lines], sums: Floats) -> AtShare:
     """The result of worlds that started with one share; `sums` contains the sums of each seed."""
     _, _, variation, first, _ = sums.sum(axis=0)
-    ends = np.array([lines.share[-1] for lines in worlds])
+    end_shares = np.array([lines.share[-1] for lines in worlds])
     mean = first / variation if variation > 0 else np.nan
     parts = [(np.diff(lines.share), lines.variation) for lines in worlds]
     change, varied = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -149,11 +149,11 @@ def _at_share(start: float, worlds: Sequence[Lines], sums: Floats) -> AtShare:
         start=start,
         share=float(mean),
         selection=diffusion_strength(change, varied, len(worlds)),
-        end=share_estimate(ends),
+        end=share_estimate(end_shares),
         worlds=len(worlds),
         extinct=sum(lines.ended for lines in worlds),
-        fixed=int((ends == 1).sum()),
-        lost=int((ends == 0).sum()),
+        fixed=int((end_shares == 1).sum()),
+        lost=int((end_shares == 0).sum()),
         generations=float(np.mean([lines.generation[-1] for lines in worlds])),
     )
 

@@ -48,20 +48,20 @@ def gene_effects(
     null = within(permuted(fitness, world, rng), world)
     indices = np.unique(world)
     draws = world_draws(len(indices), rng)
-    found = []
+    effects = []
     for i, gene in enumerate(genes):
         terms = within(np.stack([z[:, i], z[:, i] ** 2 / 2], axis=1), world)
         inverse = np.linalg.pinv(terms.T @ terms)
         value = inverse @ (terms.T @ deviation)
         p = chance(value, inverse @ (terms.T @ null))
         parts = [terms[world == index] for index in indices]
-        left = np.stack([x.T @ x for x in parts])
+        cross_products = np.stack([x.T @ x for x in parts])
         right = np.stack([x.T @ deviation[world == index] for x, index in zip(parts, indices, strict=True)])
-        sums = np.linalg.pinv((draws @ left.reshape(len(left), 4)).reshape(-1, 2, 2))
+        sums = np.linalg.pinv((draws @ cross_products.reshape(len(cross_products), 4)).reshape(-1, 2, 2))
         low, high = world_interval((sums @ (draws @ right)[..., None])[..., 0], len(indices))
         slope, curvature = ((float(value[k]), float(low[k]), float(high[k]), float(p[k])) for k in range(2))
-        found.append(GeneEffect(gene, *slope, *curvature))
-    return found
+        effects.append(GeneEffect(gene, *slope, *curvature))
+    return effects
 
 
 def flatness(terms: Floats, fitness: Floats, world: Ints, rng: np.random.Generator) -> float:

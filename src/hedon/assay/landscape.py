@@ -153,9 +153,9 @@ def measure_landscape(sample: Sample, genes: tuple[str, str], species: str | Non
     outcomes, names = _read_outcomes(worlds), worlds[0].weight_names
     surfaces = {}
     for measure in MEASURES:
-        found = _measure(outcomes, measure, genes, names)
-        if found is not None:
-            surfaces[measure] = found
+        surface = _measure(outcomes, measure, genes, names)
+        if surface is not None:
+            surfaces[measure] = surface
     if not surfaces:
         raise AssayError(
             f"{worlds[0].run}: nothing can be measured: no founder has living descendants, children or food"
@@ -176,12 +176,12 @@ def _measure(
 ) -> MeasureSurface | None:
     values = outcomes[measure].to_numpy().astype(np.float64)
     fitness = relative(values, outcomes["world"].to_numpy())
-    known = np.isfinite(fitness)
-    if not known.any():
+    is_finite = np.isfinite(fitness)
+    if not is_finite.any():
         return None
-    fitness = fitness[known]
-    _, world = np.unique(outcomes["world"].to_numpy()[known], return_inverse=True)
-    z = outcomes.select(names).to_numpy().astype(np.float64)[known]
+    fitness = fitness[is_finite]
+    _, world = np.unique(outcomes["world"].to_numpy()[is_finite], return_inverse=True)
+    z = outcomes.select(names).to_numpy().astype(np.float64)[is_finite]
     pair = z[:, [list(names).index(gene) for gene in genes]]
     rng = np.random.default_rng([_SEED, list(MEASURES).index(measure)])
     return MeasureSurface(

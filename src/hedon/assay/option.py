@@ -32,11 +32,11 @@ def choose_genes(text: str | None, config: Config, species: str | None = None) -
         AssayError: The text does not name two genes of the config.
     """
     names = [name.strip() for name in (text if text is not None else "food,action").split(",")]
-    own = choose_species(species, config)
-    columns = [column_of(config, name, own) for name in names]
+    species_name = choose_species(species, config)
+    columns = [column_of(config, name, species_name) for name in names]
     for name, column in zip(names, columns, strict=True):
         if column is None:
-            raise AssayError(f"--genes {brief(str(text))}: {unknown_gene(config, name, own)}")
+            raise AssayError(f"--genes {brief(str(text))}: {unknown_gene(config, name, species_name)}")
     first, second = columns if len(columns) == 2 else (None, None)
     if first is None or second is None or first == second:
         raise AssayError(f"--genes {brief(str(text))}: must be two different genes, as in food,action")
@@ -82,8 +82,8 @@ def assay_worlds(
         part: Name of the folder of their run.
     """
     plan = RunPlan(config, seeds, steps, part, founders=founders)
-    each = dict.fromkeys(plan.seeds, plan.steps)
-    return Demand(plan.config, digest(plan.config), each, founders=founders, rules=plan.rules, name=part)
+    steps_by_seed = dict.fromkeys(plan.seeds, plan.steps)
+    return Demand(plan.config, digest(plan.config), steps_by_seed, founders=founders, rules=plan.rules, name=part)
 
 
 def assay_folder(kind: str, first: Demand) -> Path:
@@ -134,12 +134,12 @@ def _source(source: str, config: Config, species: str) -> Founders:
     if "=" in source and not source.endswith(".csv"):
         parts = (part.strip() for part in source.split(","))
         source = ",".join(part if "." in part.partition("=")[0] else f"{species}.{part}" for part in parts)
-    found = read_source(source, config)
-    mine = found.only_for(species)
-    if not mine.genes:
-        raise AssayError(f"{brief(source)}: has no gene of the species {species}, but {', '.join(found.genes)}")
-    mine.require(config, source)
-    return mine
+    founders = read_source(source, config)
+    species_founders = founders.only_for(species)
+    if not species_founders.genes:
+        raise AssayError(f"{brief(source)}: has no gene of the species {species}, but {', '.join(founders.genes)}")
+    species_founders.require(config, source)
+    return species_founders
 
 
 def parse_shares(text: str, config: Config, species: str) -> tuple[float, ...]:
@@ -187,11 +187,11 @@ def knocked_out(source: str, gene: str, config: Config, species: str) -> tuple[F
         RecordError: The source is not a run, or cannot be read.
     """
     column = column_of(config, gene if len(config.species) == 1 else f"{species}.{gene}")
-    wild = _source(source, config, species)
-    if column is None or column not in wild.genes:
+    wild_type = _source(source, config, species)
+    if column is None or column not in wild_type.genes:
         raise AssayError(f"knockout {brief(source)}: {unknown_gene(config, gene, species)}")
     names = (f"{column.rpartition('.')[2].removeprefix('w_')} = 0", source_label(source))
-    return _joined([wild.changed(column, 0.0), wild], names, (1.0, 1.0), config, species), names
+    return _joined([wild_type.changed(column, 0.0), wild_type], names, (1.0, 1.0), config, species), names
 
 
 def condition_of(given: str | None, sources: Sequence[str]) -> str:
@@ -220,22 +220,22 @@ def stability_config(config: Config, point: Mapping[str, float]) -> Config:
             have two parents, while drift is computed along pedigrees with one.
     """
     if len(config.species) > 1:
-        there = ", ".join(config.species)
-        raise AssayError(f"stability: needs a world of one species, and {config.name} has {there}")
+        species_names = ", ".join(config.species)
+        raise AssayError(f"stability: needs a world of one species, and {config.name} has {species_names}")
     if next(iter(config.species.values())).birth.mating == "pairs":
         raise AssayError(
             'stability: needs children of one parent, since drift is computed along their pedigree: birth.mating="none"'
         )
-    changed = config.with_("genome.neutral_count", NEUTRAL).with_("world.founders", "")
+    assay_config = config.with_("genome.neutral_count", NEUTRAL).with_("world.founders", "")
     for column, value in point.items():
         kind = column.removeprefix("w_")
         if column == "w_action":
-            changed = changed.with_("genome.action.initial_mean", value)
+            assay_config = assay_config.with_("genome.action.initial_mean", value)
         elif kind in config.food:
-            changed = changed.with_(f"food.{kind}.gene.initial_mean", value)
+            assay_config = assay_config.with_(f"food.{kind}.gene.initial_mean", value)
         else:
             raise AssayError(f"--at {column}={value:g}: a neutral gene is the control, so give food kinds and action")
-    return changed
+    return assay_config
 
 
 def contingency_worlds(
@@ -279,8 +279,8 @@ def contingency_worlds(
 
 
 def _continued(plan: RunPlan, seeds: Sequence[int], name: str) -> Demand:
-    each = dict.fromkeys(seeds, plan.steps)
-    return Demand(plan.config, digest(plan.config), each, 0, plan.founders, plan.networks, plan.rules, name)
+    steps_by_seed = dict.fromkeys(seeds, plan.steps)
+    return Demand(plan.config, digest(plan.config), steps_by_seed, 0, plan.founders, plan.networks, plan.rules, name)
 
 
 def _run_and_step(source: str) -> tuple[Path, int | None]:

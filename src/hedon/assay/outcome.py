@@ -30,14 +30,15 @@ def founder_outcomes(agents: pl.DataFrame, names: Sequence[str], last_step: int)
     """
     rows = agents.sort("agent_id")
     tree = genealogy(rows)
-    lived, _ = durations(rows, last_step)
-    gained = rows["energy_gained"].to_numpy().astype(np.float64)
-    first = np.flatnonzero(tree.parent < 0)
-    of_line = {
+    lifetimes, _ = durations(rows, last_step)
+    energy_gained = rows["energy_gained"].to_numpy().astype(np.float64)
+    founders = np.flatnonzero(tree.parent < 0)
+    outcomes = {
         "descendants": shares_of_descent(tree, rows, tree.alive.astype(np.float64)),
-        "food": shares_of_descent(tree, rows, gained) / np.maximum(shares_of_descent(tree, rows, lived), 1.0),
+        "food": shares_of_descent(tree, rows, energy_gained)
+        / np.maximum(shares_of_descent(tree, rows, lifetimes), 1.0),
         "offspring": rows["children"].to_numpy().astype(np.float64),
-        "lifespan": lived,
+        "lifespan": lifetimes,
     }
-    measures = {name: pl.Series(of_line[name][first]) for name in MEASURES}
-    return rows[first].select("agent_id", *names).with_columns(**measures)
+    measures = {name: pl.Series(outcomes[name][founders]) for name in MEASURES}
+    return rows[founders].select("agent_id", *names).with_columns(**measures)

@@ -29,12 +29,12 @@ def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Se
         AssayError: There is no table of founders, or its groups cannot be distinguished.
     """
     (sample,) = samples
-    found = estimate(groups, sample_lines(sample, groups, species), sample.steps)
-    content = {"groups": list(groups), "selection": vars(found.selection), "share": vars(found.share)}
-    content |= {name: getattr(found, name) for name in ("start", "p", "fixed", "lost", "generations")}
+    contest = estimate(groups, sample_lines(sample, groups, species), sample.steps)
+    content = {"groups": list(groups), "selection": vars(contest.selection), "share": vars(contest.share)}
+    content |= {name: getattr(contest, name) for name in ("start", "p", "fixed", "lost", "generations")}
     intro = f"{groups[0]} against {groups[1]}, without mutation. {world_line(samples)}"
-    figure = NamedFigure(kind, "Which group grows?", draw_contest(found))
-    return assay_answer(kind, samples, content, contest_tables(found), intro, figure)
+    figure = NamedFigure(kind, "Which group grows?", draw_contest(contest))
+    return assay_answer(kind, samples, content, contest_tables(contest), intro, figure)
 
 
 def contest_tables(contest: Contest) -> list[ResultTable]:
@@ -55,11 +55,11 @@ def contest_tables(contest: Contest) -> list[ResultTable]:
         "exchange their groups."
     )
     step, ratio, bounds = contest.course()
-    course = [
+    ratio_rows = [
         {"step": int(step[i]), "value": float(ratio[i]), "low": float(bounds[0, i]), "high": float(bounds[1, i])}
         for i in np.linspace(0, len(step) - 1, _SHOWN_TIMES + 1).round().astype(int)
     ]
-    finite = [{name: value if np.isfinite(value) else None for name, value in row.items()} for row in course]
+    finite = [{name: value if np.isfinite(value) else None for name, value in row.items()} for row in ratio_rows]
     worlds = [
         {
             "seed": lines.seed,
@@ -93,16 +93,16 @@ def draw_contest(contest: Contest) -> Figure:
         left.set_ylim(0, 1)
         left.set_xlabel(name)
         head(left, f"Share of {contest.groups[0]}", "gray: worlds; blue: their mean; dashed: at the start")
-        known = np.isfinite(ratio)
-        right.plot(step[known] / unit, ratio[known], color=INK, linewidth=1.6)
+        is_finite = np.isfinite(ratio)
+        right.plot(step[is_finite] / unit, ratio[is_finite], color=INK, linewidth=1.6)
         right.fill_between(step / unit, low, high, color=PALE, alpha=0.6, where=np.isfinite(low) & np.isfinite(high))
         right.axhline(0.0, color=MUTED, linewidth=0.8)
         right.set_xlabel(name)
-        found = contest.selection
+        selection = contest.selection
         head(
             right,
             "Log ratio",
-            f"s = {found.value:.3g} per generation, {found.low:.3g} to {found.high:.3g}, p {contest.p:.3g}",
+            f"s = {selection.value:.3g} per generation, {selection.low:.3g} to {selection.high:.3g}, p {contest.p:.3g}",
         )
     return figure
 

@@ -26,8 +26,8 @@ CAUTION = (
 def contingency_answer(samples: Sequence[Sample]) -> Answer:
     """The results of a contingency assay; the first sample contains the fresh worlds, the others futures."""
     fresh = samples[0]
-    futures: list[Futures] = [(each.demand.past, each) for each in samples if each.demand.past is not None]
-    found, shared = diverged(fresh, futures), overlaps(futures)
+    futures: list[Futures] = [(sample.demand.past, sample) for sample in samples if sample.demand.past is not None]
+    divergences, shared = diverged(fresh, futures), overlaps(futures)
     content = {
         FACTORS: [PAST],
         CAUTIONS: [CAUTION],
@@ -37,8 +37,8 @@ def contingency_answer(samples: Sequence[Sample]) -> Answer:
         "Futures of one world begin with the same agents and differ by chance alone from then on. "
         f"{world_line(samples)}"
     )
-    tables = [*contingency_tables(found, shared), world_table(_world_rows(fresh, futures))]
-    figure = NamedFigure("contingency", "How much was settled, and when?", draw_contingency(found))
+    tables = [*contingency_tables(divergences, shared), world_table(_world_rows(fresh, futures))]
+    figure = NamedFigure("contingency", "How much was settled, and when?", draw_contingency(divergences))
     return assay_answer("contingency", samples, content, tables, intro, figure)
 
 
@@ -86,13 +86,13 @@ def contingency_tables(found: Sequence[Divergence], shared: Sequence[Overlap]) -
         }
         for each in shared
     ]
-    explained = (
+    overlap_note = (
         "Overlap: the part of two futures' living that descends from the same agents. By chance: the same if the "
         "agents of that step were interchangeable. Permutation test, Holm over all rows."
     )
     return [
         make_table("contingency", "How far apart the worlds end", [finite_row(row) for row in rows], note),
-        make_table("contingency_lineage", "Do the same agents leave descendants?", lineages, explained),
+        make_table("contingency_lineage", "Do the same agents leave descendants?", lineages, overlap_note),
     ]
 
 
@@ -105,30 +105,47 @@ def verdict(each: Divergence) -> str:
 
 def draw_contingency(found: Sequence[Divergence]) -> Figure:
     """Draws the ratio of each measure with its interval, for each step from which there are futures."""
-    steps = sorted({each.step for each in found})
-    measures = list(dict.fromkeys(each.measure for each in found))[::-1]
+    steps = sorted({result.step for result in found})
+    measures = list(dict.fromkeys(result.measure for result in found))[::-1]
     with styled():
         figure = new_figure(5.6, 1.2 + 0.32 * len(measures))
         axes = figure.subplots()
         axes.axvline(1.0, color=MUTED, linewidth=0.8, linestyle="--")
         for i, step in enumerate(steps):
-            mine = [each for each in found if each.step == step and np.isfinite(each.ratio)]
+            step_rows = [result for result in found if result.step == step and np.isfinite(result.ratio)]
             color, shift = SEED_COLORS[i % len(SEED_COLORS)], 0.22 * ((len(steps) - 1) / 2 - i)
-            rows = [measures.index(each.measure) + shift for each in mine]
-            axes.hlines(rows, [each.low for each in mine], [each.high for each in mine], color=color, linewidth=1.4)
-            axes.plot([each.ratio for each in mine], rows, "o", color=color, markersize=4, label=_when(found, step))
+            rows = [measures.index(result.measure) + shift for result in step_rows]
+            axes.hlines(
+                rows,
+                [result.low for result in step_rows],
+                [result.high for result in step_rows],
+                color=color,
+                linewidth=1.4,
+            )
+            axes.plot(
+                [result.ratio for result in step_rows],
+                rows,
+                "o",
+                color=color,
+                markersize=4,
+                label=_when(found, step),
+            )
         axes.set_xscale("log")
         axes.set_yticks(range(len(measures)), measures)
         axes.set_xlabel("distance of two futures / distance of two fresh worlds, at the end")
         if len(steps) > 1:
             axes.legend()
-        settled = sum(verdict(each) == "partly settled" for each in found)
-        head(axes, "How much was settled, and when", f"1: nothing was; {settled} of {len(found)} are shown to be lower")
+        settled_count = sum(verdict(result) == "partly settled" for result in found)
+        head(
+            axes,
+            "How much was settled, and when",
+            f"1: nothing was; {settled_count} of {len(found)} are shown to be lower",
+        )
     return figure
 
 
-def _when(found: Sequence[Divergence], step: int) -> str:
-    generation = next(each.generation for each in found if each.step == step)
+def _when(divergences: Sequence[Divergence], step: int) -> str:
+    generation = next(result.generation for result in divergences if result.step == step)
     return f"futures part at step {step:,} (generation {generation:.1f})"
 
 
@@ -139,8 +156,8 @@ def _world_rows(fresh: Sample, futures: Sequence[Futures]) -> list[dict[str, Any
     for name, step, sample in groups:
         for world in sample.worlds:
             row = rows.setdefault((name, world.seed), {PAST: name, "seed": world.seed})
-            before = f"{world.species}." if len(world.config.species) > 1 else ""
+            prefix = f"{world.species}." if len(world.config.species) > 1 else ""
             measures = [each for group in measures_of(world).values() for each in group]
             measures += [lineages_since(step)] if step is not None else []
-            row |= {f"{before}{each.name}": each.value(world) for each in measures}
+            row |= {f"{prefix}{each.name}": each.value(world) for each in measures}
     return list(rows.values())

@@ -32,18 +32,18 @@ def frequency_answer(
         AssayError: There is no table of founders, or its groups cannot be distinguished.
     """
     pairs = zip(shares, samples, strict=True)
-    of_share = {share: sample_lines(each, groups, species) for share, each in pairs}
-    found = estimate_frequency(groups, of_share)
-    content = {"groups": list(groups), "verdict": found.verdict, FACTORS: [START]}
-    content |= {"slope": vars(found.slope), "crossing": vars(found.crossing)}
+    lines_by_share = {share: sample_lines(each, groups, species) for share, each in pairs}
+    frequency = estimate_frequency(groups, lines_by_share)
+    content = {"groups": list(groups), "verdict": frequency.verdict, FACTORS: [START]}
+    content |= {"slope": vars(frequency.slope), "crossing": vars(frequency.crossing)}
     intro = f"{groups[0]} against {groups[1]} from several shares, without mutation. {world_line(samples)}"
     worlds = [
         {START: share, "seed": lines.seed, "share": float(lines.share[-1]), "selection": lines.selection}
-        for share, each in of_share.items()
+        for share, each in lines_by_share.items()
         for lines in each
     ]
-    tables = [*frequency_tables(found), world_table(worlds)]
-    figure = NamedFigure("frequency", "Does growth depend on the share?", draw_frequency(found))
+    tables = [*frequency_tables(frequency), world_table(worlds)]
+    figure = NamedFigure("frequency", "Does growth depend on the share?", draw_frequency(frequency))
     return assay_answer("frequency", samples, content, tables, intro, figure)
 
 
@@ -61,19 +61,19 @@ def frequency_tables(found: Frequency) -> list[ResultTable]:
     )
     shares = [
         {
-            START: each.start,
-            "mean share": each.share,
-            "s": each.selection.value,
-            "low": each.selection.low,
-            "high": each.selection.high,
-            "share at the end": each.end.value,
-            "worlds": each.worlds,
-            "died out": each.extinct,
-            f"{first} alone": each.fixed,
-            f"{second} alone": each.lost,
-            "generations": each.generations,
+            START: share_result.start,
+            "mean share": share_result.share,
+            "s": share_result.selection.value,
+            "low": share_result.selection.low,
+            "high": share_result.selection.high,
+            "share at the end": share_result.end.value,
+            "worlds": share_result.worlds,
+            "died out": share_result.extinct,
+            f"{first} alone": share_result.fixed,
+            f"{second} alone": share_result.lost,
+            "generations": share_result.generations,
         }
-        for each in found.shares
+        for share_result in found.shares
     ]
     result = f"{first} against {second}, by the share of {first}"
     title = f"Selection coefficient of {first} per generation, by its share among the founders"
@@ -92,10 +92,10 @@ def draw_frequency(found: Frequency) -> Figure:
         axes.axhline(0.0, color=MUTED, linewidth=0.8)
         axes.fill_between(share, low, high, color=PALE, alpha=0.6, where=np.isfinite(low) & np.isfinite(high))
         axes.plot(share, line, color=INK, linewidth=1.4)
-        for each in found.shares:
-            bounds = (each.selection.low, each.selection.high)
-            axes.plot((each.share, each.share), bounds, color=BLUE, linewidth=1.4)
-            axes.plot(each.share, each.selection.value, "o", color=BLUE, markersize=5)
+        for share_result in found.shares:
+            bounds = (share_result.selection.low, share_result.selection.high)
+            axes.plot((share_result.share, share_result.share), bounds, color=BLUE, linewidth=1.4)
+            axes.plot(share_result.share, share_result.selection.value, "o", color=BLUE, markersize=5)
         if np.isfinite(found.crossing.value):
             axes.axvline(found.crossing.value, color=MUTED, linewidth=0.8, linestyle="--")
         axes.set_xlim(0, 1)

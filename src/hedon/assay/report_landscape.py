@@ -31,13 +31,13 @@ def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], 
     Raises:
         AssayError: All worlds died out before anything could be measured.
     """
-    found = measure_landscape(samples[0], genes, species)
-    tables = [_surfaces(found), _effects(found), *_ends(found, ends), world_table(_slopes(found))]
-    first = f"{found.founders} founders in each world, no mutation. {world_line(samples)}"
-    intro = "\n".join([first, "", *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items())])
-    files = {OUTCOMES: found.outcomes.write_csv()}
-    figure = NamedFigure("landscape", "How fit is each reward?", draw_landscape(found, ends))
-    return assay_answer("landscape", samples, _landscape_json(found), tables, intro, figure, files)
+    landscape = measure_landscape(samples[0], genes, species)
+    tables = [_surfaces(landscape), _effects(landscape), *_ends(landscape, ends), world_table(_slopes(landscape))]
+    headline = f"{landscape.founders} founders in each world, no mutation. {world_line(samples)}"
+    intro = "\n".join([headline, "", *(f"- **{name}**: {meaning}" for name, meaning in MEASURES.items())])
+    files = {OUTCOMES: landscape.outcomes.write_csv()}
+    figure = NamedFigure("landscape", "How fit is each reward?", draw_landscape(landscape, ends))
+    return assay_answer("landscape", samples, _landscape_json(landscape), tables, intro, figure, files)
 
 
 def _slopes(landscape: Landscape) -> list[dict[str, Any]]:
@@ -58,21 +58,21 @@ def _slopes(landscape: Landscape) -> list[dict[str, Any]]:
 def _landscape_json(landscape: Landscape) -> dict[str, Any]:
     """The contents of the summary besides the tables."""
     surfaces = {}
-    for name, found in landscape.surfaces.items():
-        smooth, quadratic = found.smooth, found.quadratic
+    for name, surface in landscape.surfaces.items():
+        smooth, quadratic = surface.smooth, surface.quadratic
         surfaces[name] = {
-            "mean": found.mean,
-            "worlds": found.worlds,
-            "flat_p": found.flat_p,
+            "mean": surface.mean,
+            "worlds": surface.worlds,
+            "flat_p": surface.flat_p,
             "quadratic": {
-                "slope": [asdict(each) for each in quadratic.slope],
-                "curvature": [asdict(each) for each in quadratic.curvature],
+                "slope": [asdict(estimate) for estimate in quadratic.slope],
+                "curvature": [asdict(estimate) for estimate in quadratic.curvature],
                 "interaction": asdict(quadratic.interaction),
-                "optimum": [asdict(each) for each in quadratic.optimum],
+                "optimum": [asdict(estimate) for estimate in quadratic.optimum],
             },
             "smooth": {
-                "slope": [asdict(each) for each in smooth.slope],
-                "optimum": [asdict(each) for each in smooth.optimum],
+                "slope": [asdict(estimate) for estimate in smooth.slope],
+                "optimum": [asdict(estimate) for estimate in smooth.optimum],
                 "at_edge": smooth.at_edge,
                 "freedom": smooth.freedom,
                 "axes": smooth.axes.tolist(),
@@ -92,39 +92,40 @@ def _landscape_json(landscape: Landscape) -> dict[str, Any]:
 
 def _surfaces(landscape: Landscape) -> ResultTable:
     rows = []
-    for measure, found in landscape.surfaces.items():
+    for measure, surface in landscape.surfaces.items():
         pairs = (
-            ("optimum, smooth surface", found.smooth.optimum),
-            ("slope at 0, smooth surface", found.smooth.slope),
-            ("slope at 0, quadratic", found.quadratic.slope),
-            ("curvature, quadratic", found.quadratic.curvature),
-            ("optimum, quadratic", found.quadratic.optimum),
+            ("optimum, smooth surface", surface.smooth.optimum),
+            ("slope at 0, smooth surface", surface.smooth.slope),
+            ("slope at 0, quadratic", surface.quadratic.slope),
+            ("curvature, quadratic", surface.quadratic.curvature),
+            ("optimum, quadratic", surface.quadratic.optimum),
         )
-        for what, estimates in pairs:
+        for quantity, estimates in pairs:
             for gene, estimate in zip(landscape.genes, estimates, strict=True):
-                rows.append(estimate_row({"fitness": measure, "quantity": what, "gene": _short(gene)}, estimate))
+                rows.append(estimate_row({"fitness": measure, "quantity": quantity, "gene": _short(gene)}, estimate))
         rows.append(
             estimate_row(
-                {"fitness": measure, "quantity": "interaction, quadratic", "gene": "both"}, found.quadratic.interaction
+                {"fitness": measure, "quantity": "interaction, quadratic", "gene": "both"},
+                surface.quadratic.interaction,
             )
         )
-    edges = [name for name, found in landscape.surfaces.items() if found.smooth.at_edge]
+    edges = [name for name, surface in landscape.surfaces.items() if surface.smooth.at_edge]
     note = "Fitness is relative to the mean of the own world. Intervals: bootstrap over worlds. The smooth surface "
     note += "is too low at a narrow peak, and its interval misses the true height there in two of three cases. "
     note += f"By {', '.join(edges)} the surface is highest at the edge of the founders' range. " if edges else ""
-    flat = ", ".join(f"{name} {found.flat_p:.3g}" for name, found in landscape.surfaces.items())
+    flat = ", ".join(f"{name} {surface.flat_p:.3g}" for name, surface in landscape.surfaces.items())
     note += f"Chance that two genes explain this much or more if they do nothing (permutation within worlds): {flat}."
     return make_table("surface", "Fitness over two genes", rows, note)
 
 
 def _effects(landscape: Landscape) -> ResultTable:
     rows = []
-    for measure, found in landscape.surfaces.items():
-        neutral = [effect for effect in found.effects if effect.gene.startswith("neutral_")]
+    for measure, surface in landscape.surfaces.items():
+        neutral = [effect for effect in surface.effects if effect.gene.startswith("neutral_")]
         slopes, curvatures = (
             np.array([getattr(effect, name) for effect in neutral]) for name in ("slope", "curvature")
         )
-        for effect in found.effects:
+        for effect in surface.effects:
             if effect in neutral:
                 continue
             rows.append(
@@ -159,16 +160,16 @@ def _effects(landscape: Landscape) -> ResultTable:
 
 
 def _ends(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
-    found = on_surface(ends, landscape.genes)
-    if not found:
+    surface_ends = on_surface(ends, landscape.genes)
+    if not surface_ends:
         return []
-    points = np.array([point for _, point in found])
+    points = np.array([point for _, point in surface_ends])
     rows = []
     for measure, surface in landscape.surfaces.items():
         low, high = surface.smooth.axes[:, 0], surface.smooth.axes[:, -1]
-        inside = np.clip(points, low, high)
+        clipped = np.clip(points, low, high)
         top = float(surface.smooth.value.max())
-        for (end, point), estimate in zip(found, surface.smooth.at(inside), strict=True):
+        for (end, point), estimate in zip(surface_ends, surface.smooth.at(clipped), strict=True):
             genes = {_short(gene): value for gene, value in zip(landscape.genes, point, strict=True)}
             row = estimate_row({"fitness": measure, "end": end.source, **genes}, estimate)
             rows.append(row | {"of the highest": estimate.value / top if top > 0 else None})
@@ -177,8 +178,8 @@ def _ends(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
 
 
 def _score(value: float, neutral: np.ndarray) -> float | None:
-    spread = float(np.sqrt(np.mean(neutral**2))) if len(neutral) else 0.0
-    return value / spread if spread > 0 else None
+    scale = float(np.sqrt(np.mean(neutral**2))) if len(neutral) else 0.0
+    return value / scale if scale > 0 else None
 
 
 def _short(gene: str) -> str:

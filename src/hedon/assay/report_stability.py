@@ -35,7 +35,10 @@ def stability_answer(points: Sequence[str], samples: Sequence[Sample]) -> Answer
         }
         for start in starts
     ]
-    lines = [f"- `{each.name}`: {each.generations:.0f} generations, {each.extinct} worlds died out" for each in starts]
+    lines = [
+        f"- `{stability.name}`: {stability.generations:.0f} generations, {stability.extinct} worlds died out"
+        for stability in starts
+    ]
     intro = "\n".join([f"Evolution from {', and from '.join(points)}. {world_line(samples)}", "", *lines])
     figure = NamedFigure("stability", "Where do weights go?", draw_stability(starts))
     summary = {"starts": content, FACTORS: ["run"]}
@@ -71,19 +74,19 @@ def stability_tables(starts: Sequence[Stability]) -> list[ResultTable]:
                 }
             )
         if neutral:
-            leave = sum(course.verdict == "leaves" for course in neutral)
+            leaving_count = sum(course.verdict == "leaves" for course in neutral)
             ends = [course.end.mean for course in neutral if course.end.mean is not None]
             rows.append(
                 {
                     "run": start.name,
                     "gene": f"{len(neutral)} neutral",
                     "end": float(np.mean(ends)) if ends else None,
-                    "verdict": f"{leave} leave",
+                    "verdict": f"{leaving_count} leave",
                 }
             )
         for name, course in start.courses.items():
-            known = np.isfinite(course.mean).any(axis=0)
-            for i in np.flatnonzero(known):
+            is_recorded = np.isfinite(course.mean).any(axis=0)
+            for i in np.flatnonzero(is_recorded):
                 mean, (low, high) = float(np.nanmean(course.mean[:, i])), course.null[:, i].tolist()
                 courses.append(
                     {
@@ -129,5 +132,5 @@ def draw_stability(starts: Sequence[Stability]) -> Figure:
 
 
 def _mean(values: np.ndarray) -> np.ndarray:
-    known = np.isfinite(values)
-    return np.where(known.any(axis=0), np.nansum(values, axis=0) / np.maximum(known.sum(axis=0), 1), np.nan)
+    is_finite = np.isfinite(values)
+    return np.where(is_finite.any(axis=0), np.nansum(values, axis=0) / np.maximum(is_finite.sum(axis=0), 1), np.nan)

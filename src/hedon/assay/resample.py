@@ -46,12 +46,14 @@ def world_interval(values: NDArray[np.float64], worlds: int) -> Floats:
     """
     if worlds < FOR_INTERVAL:
         return np.full((2, *values.shape[1:]), np.nan)
-    reach = math.sqrt(worlds / (worlds - 1)) * t_quantile(0.975, worlds - 1)
-    tail = normal_below(-reach)
-    known = np.isfinite(values)
-    enough = known.mean(axis=0) >= 1.0 - _FAILED
-    bounds = np.nanquantile(np.where(known | ~enough, np.where(known, values, 0.0), np.nan), (tail, 1.0 - tail), axis=0)
-    return np.where(enough, bounds, np.nan)
+    t_bound = math.sqrt(worlds / (worlds - 1)) * t_quantile(0.975, worlds - 1)
+    tail = normal_below(-t_bound)
+    is_finite = np.isfinite(values)
+    is_sufficient = is_finite.mean(axis=0) >= 1.0 - _FAILED
+    bounds = np.nanquantile(
+        np.where(is_finite | ~is_sufficient, np.where(is_finite, values, 0.0), np.nan), (tail, 1.0 - tail), axis=0
+    )
+    return np.where(is_sufficient, bounds, np.nan)
 
 
 @dataclass(frozen=True)
@@ -95,8 +97,8 @@ def diffusion_strength(change: Floats, variation: Floats, worlds: int) -> Estima
     strength = float(change.sum()) / total
     if worlds < FOR_INTERVAL:
         return Estimate(strength, math.nan, math.nan)
-    reach = normal_quantile(0.975) * math.sqrt(float(((change - strength * variation) ** 2).sum())) / total
-    return Estimate(strength, strength - reach, strength + reach)
+    half_width = normal_quantile(0.975) * math.sqrt(float(((change - strength * variation) ** 2).sum())) / total
+    return Estimate(strength, strength - half_width, strength + half_width)
 
 
 def share_estimate(shares: Floats) -> Estimate:
@@ -105,10 +107,10 @@ def share_estimate(shares: Floats) -> Estimate:
     Args:
         shares: Share in each world, shape (worlds,).
     """
-    found = mean_interval(shares.tolist(), within=SHARE)
-    if found.mean is None or found.low is None or found.high is None:
-        return Estimate(math.nan if found.mean is None else found.mean, math.nan, math.nan)
-    return Estimate(found.mean, found.low, found.high)
+    interval = mean_interval(shares.tolist(), within=SHARE)
+    if interval.mean is None or interval.low is None or interval.high is None:
+        return Estimate(math.nan if interval.mean is None else interval.mean, math.nan, math.nan)
+    return Estimate(interval.mean, interval.low, interval.high)
 
 
 def within(values: Floats, world: Ints) -> Floats:
@@ -124,8 +126,8 @@ def within(values: Floats, world: Ints) -> Floats:
     count = np.bincount(world)
     columns = values if values.ndim > 1 else values[:, None]
     means = np.stack([np.bincount(world, column) / np.maximum(count, 1) for column in columns.T], axis=1)
-    found = columns - means[world]
-    return found if values.ndim > 1 else found[:, 0]
+    deviations = columns - means[world]
+    return deviations if values.ndim > 1 else deviations[:, 0]
 
 
 def relative(values: Floats, world: Ints) -> Floats:
@@ -148,12 +150,12 @@ def permuted(values: Floats, world: Ints, rng: np.random.Generator, times: int =
         rng: Source of random numbers.
         times: Number of permutations.
     """
-    found = np.empty((len(values), times))
+    result = np.empty((len(values), times))
     for index in np.unique(world):
-        mine = np.flatnonzero(world == index)
-        order = rng.permuted(np.tile(mine[:, None], (1, times)), axis=0)
-        found[mine] = values[order]
-    return found
+        members = np.flatnonzero(world == index)
+        order = rng.permuted(np.tile(members[:, None], (1, times)), axis=0)
+        result[members] = values[order]
+    return result
 
 
 def chance(observed: Floats, null: Floats) -> Floats:
@@ -163,5 +165,5 @@ def chance(observed: Floats, null: Floats) -> Floats:
         observed: Observed values, any shape.
         null: Values under the null hypothesis; the same shape with a last axis for permutations.
     """
-    beyond = (np.abs(null) >= np.abs(observed)[..., None] * (1 - 1e-12)).sum(axis=-1)
-    return (1.0 + beyond) / (1.0 + null.shape[-1])
+    extreme_count = (np.abs(null) >= np.abs(observed)[..., None] * (1 - 1e-12)).sum(axis=-1)
+    return (1.0 + extreme_count) / (1.0 + null.shape[-1])

@@ -37,11 +37,11 @@ class Sample:
     def describe(self) -> str:
         """A sentence on how many worlds there are, how long they lived, and which died out."""
         pairs = [pair for run in self.runs for pair in zip(run.manifest.seeds, run.manifest.extinct_steps, strict=True)]
-        died = {seed: step for seed, step in pairs if seed in self.demand.steps and step is not None}
-        said = [f"seed {seed} at step {step:,}" for seed, step in died.items() if step <= self.steps]
+        extinction_steps = {seed: step for seed, step in pairs if seed in self.demand.steps and step is not None}
+        extinctions = [f"seed {seed} at step {step:,}" for seed, step in extinction_steps.items() if step <= self.steps]
         return (
             f"`{self.demand.name}`: {count(len(self.demand.steps), 'world')}, {self.steps:,} steps; "
-            f"died out: {', '.join(said) or 'none'}."
+            f"died out: {', '.join(extinctions) or 'none'}."
         )
 
 

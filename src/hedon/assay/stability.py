@@ -84,8 +84,8 @@ class Stability:
 def measure_stability(sample: Sample) -> Stability:
     """Measures the courses of all weights in finished worlds."""
     worlds, steps = sample.worlds, sample.steps
-    found = [world_course(world, steps / TIMES, generator(world)) for world in worlds]
-    courses = [course for course in found if course is not None]
+    all_courses = [world_course(world, steps / TIMES, generator(world)) for world in worlds]
+    courses = [course for course in all_courses if course is not None]
     names = worlds[0].weight_names
     step = np.arange(TIMES + 1) * steps / TIMES
     weights = {name: weight_course(name, worlds[0].gene(name).law.initial_mean, step, courses) for name in names}
@@ -96,7 +96,7 @@ def measure_stability(sample: Sample) -> Stability:
         extinct=sum(world.extinct_step is not None for world in worlds),
         generations=float(np.mean([course.generations for course in courses])) if courses else 0.0,
         courses=weights,
-        seeds=tuple(world.seed for world, course in zip(worlds, found, strict=True) if course is not None),
+        seeds=tuple(world.seed for world, course in zip(worlds, all_courses, strict=True) if course is not None),
     )
 
 
@@ -115,12 +115,12 @@ def weight_course(name: str, start: float, step: Floats, courses: Sequence[World
     mean = np.full((len(courses), len(step)), np.nan)
     for row, course in zip(mean, courses, strict=True):
         row[: len(course.mean[name])] = course.mean[name]
-    walks = min((len(course.neutral[name]) for course in courses), default=0)
-    null = np.full((walks, len(step)), np.nan)
+    walk_count = min((len(course.neutral[name]) for course in courses), default=0)
+    null = np.full((walk_count, len(step)), np.nan)
     if courses:
-        stacked = np.full((len(courses), walks, len(step)), np.nan)
+        stacked = np.full((len(courses), walk_count, len(step)), np.nan)
         for block, course in zip(stacked, courses, strict=True):
-            block[:, : course.neutral[name].shape[1]] = course.neutral[name][:walks]
+            block[:, : course.neutral[name].shape[1]] = course.neutral[name][:walk_count]
         living = np.isfinite(stacked).sum(axis=0)
         null = np.where(living > 0, np.nansum(stacked, axis=0) / np.maximum(living, 1), np.nan)
     rng = np.random.default_rng(SEED)
@@ -132,7 +132,7 @@ def weight_course(name: str, start: float, step: Floats, courses: Sequence[World
         start=start,
         step=step,
         mean=mean,
-        null=np.quantile(null, (0.025, 0.975), axis=0) if walks else np.full((2, len(step)), np.nan),
+        null=np.quantile(null, (0.025, 0.975), axis=0) if walk_count else np.full((2, len(step)), np.nan),
         end=mean_interval([course.mean[name][-1] for course in courses]),
         score=float(scores.mean()) if len(scores) else math.nan,
         p=_two_sided(scores),
@@ -142,8 +142,8 @@ def weight_course(name: str, start: float, step: Floats, courses: Sequence[World
 
 def _known(scores: Sequence[float]) -> Floats:
     """The scores without NaN, which marks genes that cannot change."""
-    every = np.array(scores, float)
-    return every[np.isfinite(every)]
+    values = np.array(scores, float)
+    return values[np.isfinite(values)]
 
 
 def judge(starts: Sequence[Stability]) -> list[Stability]:

@@ -104,11 +104,17 @@ def fit_quadratic(z: Floats, fitness: Floats, world: Ints, rng: np.random.Genera
     scale = terms.std(axis=0)
     worlds, left, right = _moments(terms / scale, deviation, world)
     draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, rng)])
-    found = _solve(draws, left, right, np.eye(5) * _RIDGE) / scale
-    told = [bounded(found[0, i], found[1:, i], worlds) for i in range(5)]
-    optima = np.array([_maximum(row) for row in found])
+    coefficients = _solve(draws, left, right, np.eye(5) * _RIDGE) / scale
+    estimates = [bounded(coefficients[0, i], coefficients[1:, i], worlds) for i in range(5)]
+    optima = np.array([_maximum(row) for row in coefficients])
     optimum = [bounded(optima[0, i], optima[1:, i], worlds) for i in range(2)]
-    return Quadratic((told[0], told[1]), (told[2], told[3]), told[4], (optimum[0], optimum[1]), found[0])
+    return Quadratic(
+        (estimates[0], estimates[1]),
+        (estimates[2], estimates[3]),
+        estimates[4],
+        (optimum[0], optimum[1]),
+        coefficients[0],
+    )
 
 
 def fit_smooth(
@@ -124,20 +130,20 @@ def fit_smooth(
         rng: Source of random numbers.
     """
     knots = np.stack([_knots(low, high) for low, high in zip(*bounds, strict=True)])
-    inside = np.clip(z, *bounds)
-    basis, deviation = within(_basis(inside, knots), world), within(fitness, world)
+    clipped = np.clip(z, *bounds)
+    basis, deviation = within(_basis(clipped, knots), world), within(fitness, world)
     worlds, left, right = _moments(basis, deviation, world)
     penalty = _penalty(knots.shape[1] - _DEGREE - 1)
     smoothness, freedom = _choose(left.sum(axis=0), right.sum(axis=0), penalty, deviation)
     draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, rng)])
-    found = _solve(draws, left, right, smoothness * penalty + _RIDGE * np.eye(len(penalty)))
-    shift = 1.0 - found @ _basis(inside, knots).mean(axis=0)
+    coefficients = _solve(draws, left, right, smoothness * penalty + _RIDGE * np.eye(len(penalty)))
+    shift = 1.0 - coefficients @ _basis(clipped, knots).mean(axis=0)
     axes = np.stack([np.linspace(low, high, GRID) for low, high in zip(*bounds, strict=True)])
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
-    surface = found @ _basis(points, knots).T + shift[:, None]
+    surface = coefficients @ _basis(points, knots).T + shift[:, None]
     low, high = world_interval(surface[1:], worlds)
     best = points[surface.argmax(axis=1)]
-    slopes = [found @ _basis(np.zeros((1, 2)), knots, gene)[0] for gene in range(2)]
+    slopes = [coefficients @ _basis(np.zeros((1, 2)), knots, gene)[0] for gene in range(2)]
     top = np.unravel_index(surface[0].argmax(), (GRID, GRID))
     shape = (GRID, GRID)
     return Smooth(
@@ -149,8 +155,8 @@ def fit_smooth(
         optimum=(bounded(best[0, 0], best[1:, 0], worlds), bounded(best[0, 1], best[1:, 1], worlds)),
         at_edge=any(i in (0, GRID - 1) for i in top),
         freedom=freedom,
-        coefficients=found[0],
-        draws=found[1:],
+        coefficients=coefficients[0],
+        draws=coefficients[1:],
         shift=shift,
         knots=knots,
         worlds=worlds,
@@ -195,19 +201,19 @@ def _basis(points: Floats, knots: Floats, slope: int | None = None) -> Floats:
 
 
 def _penalty(size: int) -> Floats:
-    second = np.diff(np.eye(size), 2, axis=0)
-    along = second.T @ second
-    return np.kron(along, np.eye(size)) + np.kron(np.eye(size), along)
+    second_difference = np.diff(np.eye(size), 2, axis=0)
+    curvature = second_difference.T @ second_difference
+    return np.kron(curvature, np.eye(size)) + np.kron(np.eye(size), curvature)
 
 
 def _choose(left: Floats, right: Floats, penalty: Floats, deviation: Floats) -> tuple[float, float]:
     """The smoothness that minimizes generalized cross-validation, and the effective number of parameters."""
-    found = []
+    candidates = []
     for smoothness in _PENALTIES:
         inverse = np.linalg.inv(left + smoothness * penalty + _RIDGE * np.eye(len(left)))
         coefficients, freedom = inverse @ right, float(np.trace(inverse @ left))
-        rest = float(deviation @ deviation - 2 * coefficients @ right + coefficients @ left @ coefficients)
-        score = rest / max(len(deviation) - freedom, 1.0) ** 2
-        found.append((score, -smoothness, freedom))
-    _, smoothness, freedom = min(found)
+        residual = float(deviation @ deviation - 2 * coefficients @ right + coefficients @ left @ coefficients)
+        score = residual / max(len(deviation) - freedom, 1.0) ** 2
+        candidates.append((score, -smoothness, freedom))
+    _, smoothness, freedom = min(candidates)
     return -smoothness, freedom
