@@ -200,13 +200,13 @@ def _wait_for_folder(folder: Path) -> None:
         InUseError: It does not end in time.
         RecordError: The folder cannot be written.
     """
-    until = time.monotonic() + _ORPHAN_SECONDS
+    deadline = time.monotonic() + _ORPHAN_SECONDS
     while folder.exists():
         try:
             with FolderLock(folder):
                 return
         except InUseError:
-            if time.monotonic() > until:
+            if time.monotonic() > deadline:
                 raise
             time.sleep(_LOOK_SECONDS)
 
@@ -223,9 +223,9 @@ def _send_state(store: Store, job: BatchJob) -> None:
     """Sends a run's folder. The checkpoint goes first: on resuming, later rows in the other files are removed."""
     if store.folder is not None:
         return
-    others = sorted(path for path in job.folder.rglob("*") if path.is_file() and not path.name.startswith("."))
-    first = checkpoint_paths(job.folder)[-1:]
-    state = _archive(job.folder, [*first, *(path for path in others if path.suffix != ".npz")])
+    other_files = sorted(path for path in job.folder.rglob("*") if path.is_file() and not path.name.startswith("."))
+    checkpoints = checkpoint_paths(job.folder)[-1:]
+    state = _archive(job.folder, [*checkpoints, *(path for path in other_files if path.suffix != ".npz")])
     store.write(_state_name(job), state)
 
 

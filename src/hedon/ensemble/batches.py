@@ -44,13 +44,13 @@ def batch_jobs(
     Raises:
         EnsembleError: Another process is running these batches.
     """
-    with lock(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as passing:
-        place, where = Path(passing), store.location
+    with lock(store, part), tempfile.TemporaryDirectory(prefix="hedon-sweep-") as scratch:
+        work_folder, location = Path(scratch), store.location
         if store.folder is not None:
-            place, where = store.folder.absolute() / WORK, str(store.folder.absolute())
+            work_folder, location = store.folder.absolute() / WORK, str(store.folder.absolute())
         elif on_cluster:
             # Unique to this store; the name of a batch contains its config, steps and seeds.
-            own = hashlib.sha256(store.location.encode()).hexdigest()[:16]
-            place = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{own}"
+            store_digest = hashlib.sha256(store.location.encode()).hexdigest()[:16]
+            work_folder = Path(tempfile.gettempdir()) / f"hedon-sweep-{plan.name}-{store_digest}"
         batches = open_batches(plan, store, part)
-        yield [batch_job(where, plan, batch, place / batch.name, checkpoint_seconds) for batch in batches]
+        yield [batch_job(location, plan, batch, work_folder / batch.name, checkpoint_seconds) for batch in batches]

@@ -35,17 +35,17 @@ class RetryLimit:
 
     def may_go_on(self, job: Job) -> bool:
         """Records that a job was lost, and returns whether to try it again."""
-        place = job.newest()
-        before, count = self._seen.get(job.folder, (place, 0))
-        count = count + 1 if place == before else 1
-        self._seen[job.folder] = place, count
+        checkpoint = job.newest()
+        previous, count = self._seen.get(job.folder, (checkpoint, 0))
+        count = count + 1 if checkpoint == previous else 1
+        self._seen[job.folder] = checkpoint, count
         return count < TRIES
 
     def reason(self, job: Job, error: Exception) -> str:
         """Why a job is abandoned: its worlds, the last error, and what to do."""
-        first = str(error).strip().partition("\n")[0]
+        message = str(error).strip().partition("\n")[0]
         return (
-            f"its process was lost {TRIES} times in a row without a new checkpoint, the last time with: {first} Its "
+            f"its process was lost {TRIES} times in a row without a new checkpoint, the last time with: {message} Its "
             f"worlds: {job.describe()}. If memory runs out, take nodes with more, or fewer `worlds` in a batch; if "
             "nodes live too briefly, lower --checkpoint"
         )
@@ -100,34 +100,36 @@ def import_ray() -> Any:
 
 def _see_through(ray: Any, jobs: Sequence[T], limit: RetryLimit, display: JobListener[T]) -> dict[Path, Outcome]:
     """Submits jobs and waits for them; lost jobs are submitted again as long as they make progress."""
-    lost = (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError)
+    lost_errors = (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError)
     # Ray's own retries never end if memory runs out, and ignore whether a job makes progress.
     remote = ray.remote(num_cpus=1, max_retries=0)(attempt)
-    room = IN_FLIGHT * max(1, int(ray.cluster_resources().get("CPU", 1)))
-    left, waiting = iter(jobs), dict[Any, T]()
+    capacity = IN_FLIGHT * max(1, int(ray.cluster_resources().get("CPU", 1)))
+    remaining, waiting = iter(jobs), dict[Any, T]()
     outcomes: dict[Path, Outcome] = {}
     with count_interrupts() as interrupted:
-        told = 0
+        handled_count = 0
         while True:
-            free = 0 if interrupted.count else room - len(waiting)
-            waiting |= {remote.remote(job, 1): job for job in islice(left, free)}
+            free = 0 if interrupted.count else capacity - len(waiting)
+            waiting |= {remote.remote(job, 1): job for job in islice(remaining, free)}
             if not waiting:
                 break
-            for done in ray.wait(list(waiting), num_returns=len(waiting), timeout=_LOOK_SECONDS)[0]:
-                job = waiting.pop(done)
+            for finished in ray.wait(list(waiting), num_returns=len(waiting), timeout=_LOOK_SECONDS)[0]:
+                job = waiting.pop(finished)
                 try:
-                    outcome = ray.get(done)
+                    outcome = ray.get(finished)
                 except ray.exceptions.RayError as error:
                     if interrupted.count:  # the job was canceled
                         continue
-                    if isinstance(error, lost) and limit.may_go_on(job):
+                    if isinstance(error, lost_errors) and limit.may_go_on(job):
                         waiting[remote.remote(job, 1)] = job
                         continue
-                    outcome = Outcome("failed", limit.reason(job, error) if isinstance(error, lost) else str(error))
+                    outcome = Outcome(
+                        "failed", limit.reason(job, error) if isinstance(error, lost_errors) else str(error)
+                    )
                 outcomes[job.folder] = outcome
                 display.end(job, outcome)
-            if told < interrupted.count:
-                told = interrupted.count
-                for each in waiting:  # jobs that have not started are dropped; the others receive Ctrl-C
-                    ray.cancel(each, force=told > 1)
+            if handled_count < interrupted.count:
+                handled_count = interrupted.count
+                for reference in waiting:  # jobs that have not started are dropped; the others receive Ctrl-C
+                    ray.cancel(reference, force=handled_count > 1)
     return outcomes

@@ -27,12 +27,12 @@ def read_results(plan: SweepPlan, store: Store) -> Iterator[tuple[str, dict[str,
     keys, seeds = set(map(plan.key, plan.conditions)), set(plan.seeds)
     names = []
     for name in store.names(RESULTS):
-        key, own = read_name(name)
-        if key in keys and seeds.intersection(own):
+        key, batch_seeds = read_name(name)
+        if key in keys and seeds.intersection(batch_seeds):
             names.append(f"{RESULTS}/{name}")
-    for begin in range(0, len(names), _AT_ONCE):
-        some = names[begin : begin + _AT_ONCE]
-        for name, content in zip(some, store.read_all(some), strict=True):
+    for start in range(0, len(names), _AT_ONCE):
+        chunk = names[start : start + _AT_ONCE]
+        for name, content in zip(chunk, store.read_all(chunk), strict=True):
             try:
                 yield read_name(name.rpartition("/")[2])[0], json.loads(content or b"")
             except ValueError as error:
@@ -54,8 +54,8 @@ def _sweep_table(plan: SweepPlan, results: Iterable[tuple[str, dict[str, Any]]])
     frames += [_frame(rows)] if rows else []
     if not frames:
         return pl.DataFrame(schema=dict.fromkeys(KEYS, pl.Int64))
-    made = pl.concat(frames, how="diagonal_relaxed").unique(["key", "seed"], keep="first")
-    values = {name: [table_value(each.settings[name]) for each in plan.conditions] for name in plan.factors}
+    outcomes = pl.concat(frames, how="diagonal_relaxed").unique(["key", "seed"], keep="first")
+    values = {name: [table_value(condition.settings[name]) for condition in plan.conditions] for name in plan.factors}
     settings = pl.DataFrame(
         {
             "condition": range(len(plan.conditions)),
@@ -64,8 +64,8 @@ def _sweep_table(plan: SweepPlan, results: Iterable[tuple[str, dict[str, Any]]])
         }
     )
     seeds = pl.DataFrame({"repetition": range(1, len(plan.seeds) + 1), "seed": plan.seeds})
-    table = settings.join(made, on="key").join(seeds, on="seed")
-    order = dict.fromkeys([*KEYS, *plan.factors, *made.columns])
+    table = settings.join(outcomes, on="key").join(seeds, on="seed")
+    order = dict.fromkeys([*KEYS, *plan.factors, *outcomes.columns])
     return table.select([name for name in order if name != "key"]).sort("condition", "repetition")
 
 

@@ -23,25 +23,26 @@ def describe(settings: Settings, seeds: Sequence[int]) -> str:
         seeds: Seeds of the worlds.
     """
     words = [
-        f"{short}={format_value(value)}" for short, value in zip(_short(list(settings)), settings.values(), strict=True)
+        f"{short_name}={format_value(value)}"
+        for short_name, value in zip(_short(list(settings)), settings.values(), strict=True)
     ]
     return ", ".join([*words, f"seed{'' if len(seeds) == 1 else 's'} {seed_text(seeds).replace('.', ',')}"])
 
 
 def seed_text(seeds: Sequence[int]) -> str:
     """Seeds as part of a name, such as "1-4.9"; `parse_seeds` reads it after replacing "." by ","."""
-    begins = [i for i in range(len(seeds)) if i == 0 or seeds[i] != seeds[i - 1] + 1]
-    ends = [*begins[1:], len(seeds)]
-    runs = [(seeds[begin], seeds[end - 1]) for begin, end in zip(begins, ends, strict=True)]
+    starts = [i for i in range(len(seeds)) if i == 0 or seeds[i] != seeds[i - 1] + 1]
+    ends = [*starts[1:], len(seeds)]
+    runs = [(seeds[start], seeds[end - 1]) for start, end in zip(starts, ends, strict=True)]
     return ".".join(f"{first}" if first == last else f"{first}-{last}" for first, last in runs)
 
 
 def _short(names: Sequence[str]) -> list[str]:
     """The shortest endings of some paths that are still unique."""
     for parts in range(1, 9):
-        short = [".".join(name.split(".")[-parts:]) for name in names]
-        if len(set(short)) == len(names):
-            return short
+        short_names = [".".join(name.split(".")[-parts:]) for name in names]
+        if len(set(short_names)) == len(names):
+            return short_names
     return list(names)
 
 
@@ -84,4 +85,4 @@ def changes(places: Mapping[str, Sequence[str]], settings: Settings) -> dict[str
         places: Complete paths of the settings that each factor changes.
         settings: Value of each factor.
     """
-    return {place: settings[name] for name, own in places.items() for place in own}
+    return {path: settings[name] for name, paths in places.items() for path in paths}

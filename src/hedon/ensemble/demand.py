@@ -59,14 +59,14 @@ class Demand:
         """Whether the worlds of a run have these settings and this past."""
         parent, past = manifest.parent, self.past
         # The name of the parent's folder does not matter: config, seed and step determine the world.
-        begun = None if parent is None else (parent.config_digest, parent.step, parent.seed)
-        wanted = None if past is None else (self.digest, past.step, past.seed)
-        return manifest.config_digest == self.digest and begun == wanted
+        actual_past = None if parent is None else (parent.config_digest, parent.step, parent.seed)
+        expected_past = None if past is None else (self.digest, past.step, past.seed)
+        return manifest.config_digest == self.digest and actual_past == expected_past
 
     def has_frames(self, run: Run) -> bool:
         """Whether a run recorded all positions that are needed."""
-        every = run.manifest.frames
-        return self.frames == 0 or (every > 0 and self.frames % every == 0)
+        interval = run.manifest.frames
+        return self.frames == 0 or (interval > 0 and self.frames % interval == 0)
 
 
 def worlds_of(demands: Sequence[Demand]) -> int:
@@ -104,7 +104,7 @@ def part_of(demands: Sequence[Demand], part: tuple[int, int]) -> list[Demand]:
     shares = [
         replace(
             demand,
-            steps={seed: demand.steps[seed] for of, seed in worlds if of is demand},
+            steps={seed: demand.steps[seed] for owner, seed in worlds if owner is demand},
             name=demand.name and f"{demand.name}-{number}",
         )
         for demand in demands

@@ -54,18 +54,18 @@ class Ensemble:
         """
         by_digest = {demand.digest: demand for demand in self.demands}
         manifests = {run.path.name: run.manifest for run in self.runs}
-        kept: dict[tuple[str, int, str], WorldRecord] = {}
+        records: dict[tuple[str, int, str], WorldRecord] = {}
         for world in read_worlds(sorted(self.runs, key=lambda run: bool(self.damaged[run.path.name]))):
             manifest = manifests[world.run]
             demand = by_digest.get(manifest.config_digest or "")
             if demand is not None and world.seed in demand.steps:
-                known = world if manifest.status in ENDED else world.until(world.recorded_step())
+                reached = world if manifest.status in ENDED else world.until(world.recorded_step())
                 # Equal settings can be written in several ways, so their name comes from the demand, not from each run.
                 species = f": {world.species}" if len(demand.config.species) > 1 else ""
-                kept[demand.digest, world.seed, world.species] = replace(
-                    known, condition=setting_name(demand.config) + species
+                records[demand.digest, world.seed, world.species] = replace(
+                    reached, condition=setting_name(demand.config) + species
                 )
-        return kept
+        return records
 
     def runs_of(self, worlds: Iterable[WorldRecord]) -> tuple[Run, ...]:
         """The runs that contain these worlds."""
@@ -84,8 +84,8 @@ def find_ensemble(demands: Sequence[Demand], folder: Path) -> Ensemble:
         try:
             run = open_run(path.parent).load()
             manifest = run.manifest
-            mine = [demand for demand in demands if demand.holds(manifest)]
-            is_wanted = any(seed in demand.steps for demand in mine for seed in manifest.seeds)
+            matching = [demand for demand in demands if demand.holds(manifest)]
+            is_wanted = any(seed in demand.steps for demand in matching for seed in manifest.seeds)
             # A config that this version cannot read, such as one that lacks a setting, may belong to a needed world.
             if is_wanted or (manifest.preset, manifest.fidelity) in presets:
                 _ = run.config
@@ -100,13 +100,13 @@ def steps_reached(run: Run) -> dict[int, float]:
     """How far a run got with the world of each seed [step]; infinite if the world died out."""
     manifest = run.manifest
     if manifest.status in ENDED:
-        done = [
+        steps_done = [
             math.inf if extinct is not None else steps
             for steps, extinct in zip(manifest.steps_done, manifest.extinct_steps, strict=True)
         ]
-        return dict(zip(manifest.seeds, done, strict=True))
+        return dict(zip(manifest.seeds, steps_done, strict=True))
     # If a run is in progress or was killed, only its records show how far it got.
-    reach: dict[int, float] = {}
+    reached_steps: dict[int, float] = {}
     for world in read_worlds([run]):  # one record per species
-        reach[world.seed] = min(reach.get(world.seed, math.inf), world.recorded_step())
-    return reach
+        reached_steps[world.seed] = min(reached_steps.get(world.seed, math.inf), world.recorded_step())
+    return reached_steps

@@ -31,11 +31,11 @@ def lock(store: Store, part: tuple[int, int]) -> Iterator[None]:
         yield
         return
     number, count = part
-    place = store.folder / LOCKS
-    with _lock_folder(place / f"{number}-of-{count}", store):
-        for other in place.glob("*-of-*"):
-            its_number, its_count = map(int, other.name.split("-of-"))
-            if (its_number, its_count) != part and (its_number - number) % gcd(its_count, count) == 0:
+    lock_folder = store.folder / LOCKS
+    with _lock_folder(lock_folder / f"{number}-of-{count}", store):
+        for other in lock_folder.glob("*-of-*"):
+            other_number, other_count = map(int, other.name.split("-of-"))
+            if (other_number, other_count) != part and (other_number - number) % gcd(other_count, count) == 0:
                 with _lock_folder(other, store):
                     pass
         yield
@@ -44,11 +44,11 @@ def lock(store: Store, part: tuple[int, int]) -> Iterator[None]:
 @contextmanager
 def _lock_folder(folder: Path, store: Store) -> Iterator[None]:
     try:
-        held = FolderLock(folder)
+        folder_lock = FolderLock(folder)
     except InUseError as error:
         raise EnsembleError(
             f"{store.location} is being made by another process{error.owner}: wait for it, stop it first, or give each "
             "its --part"
         ) from None
-    with held:
+    with folder_lock:
         yield

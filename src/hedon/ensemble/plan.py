@@ -109,14 +109,14 @@ class SweepPlan:
             done: Finished seeds of each condition.
             part: Number of a part, from 1, and the number of parts; only batches of this part are returned.
         """
-        found: list[Batch] = []
+        batches: list[Batch] = []
         for index, batch in enumerate(self.batches()):
             if index % part[1] == part[0] - 1:
-                known = done.get(self.key(self.conditions[batch.condition]), ())
-                seeds = tuple(seed for seed in batch.seeds if seed not in known)
+                finished = done.get(self.key(self.conditions[batch.condition]), ())
+                seeds = tuple(seed for seed in batch.seeds if seed not in finished)
                 if seeds:
-                    found.append(batch if seeds == batch.seeds else self._batch(batch.condition, seeds))
-        return found
+                    batches.append(batch if seeds == batch.seeds else self._batch(batch.condition, seeds))
+        return batches
 
     def changes(self, condition: SweepCondition) -> dict[str, Any]:
         """The settings that a condition changes in its base, by complete path."""
@@ -129,9 +129,9 @@ class SweepPlan:
             "format": FORMAT,
             **{name: getattr(self, name) for name in _PLAIN},
             "places": self.places,
-            "bases": [bases.index(each.base) for each in self.conditions],
-            "digests": [each.digest for each in self.conditions],
-            "values": {name: [each.settings[name] for each in self.conditions] for name in self.factors},
+            "bases": [bases.index(condition.base) for condition in self.conditions],
+            "digests": [condition.digest for condition in self.conditions],
+            "values": {name: [condition.settings[name] for condition in self.conditions] for name in self.factors},
         }
         return json.dumps(content, ensure_ascii=False) + "\n"
 
@@ -203,26 +203,26 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
     """
     if store.folder is not None and holds_run(store.folder):
         raise EnsembleError(f"{store.location} holds a run: give the sweep another place with --out")
-    plan, before = file.plan, load_plan(store) if store.read(PLAN) is not None else None
-    if before is not None:
-        shared = set(map(plan.key, plan.conditions)) & set(map(before.key, before.conditions))
-        if plan.steps != before.steps:
+    plan, previous = file.plan, load_plan(store) if store.read(PLAN) is not None else None
+    if previous is not None:
+        shared = set(map(plan.key, plan.conditions)) & set(map(previous.key, previous.conditions))
+        if plan.steps != previous.steps:
             raise EnsembleError(
-                f"{store.location} holds a sweep of {before.steps:,} steps, and {plan.name}.toml asks for "
+                f"{store.location} holds a sweep of {previous.steps:,} steps, and {plan.name}.toml asks for "
                 f"{plan.steps:,}: worlds of a sweep do not get longer, so give another place with --out"
             )
-        if not shared or not set(plan.seeds) & set(before.seeds):
+        if not shared or not set(plan.seeds) & set(previous.seeds):
             raise EnsembleError(
                 f"{store.location} holds another sweep, which has no world of that of {plan.name}.toml: give another "
                 f"place with --out, or go on with that one by `hedon sweep resume {store.location}`"
             )
-        kept = [tuple(seed for seed in each if seed in plan.seeds) for each in before.rounds]
-        new = [seed for seed in plan.seeds if seed not in before.seeds]
-        plan = replace(plan, rounds=(*filter(None, kept), *rounds_of(new, file.worlds)))
-        if plan.text() == before.text():
-            return before
+        kept_rounds = [tuple(seed for seed in round_seeds if seed in plan.seeds) for round_seeds in previous.rounds]
+        new = [seed for seed in plan.seeds if seed not in previous.seeds]
+        plan = replace(plan, rounds=(*filter(None, kept_rounds), *rounds_of(new, file.worlds)))
+        if plan.text() == previous.text():
+            return previous
     for name, base in file.bases.items():
-        if before is None or name not in before.places:
+        if previous is None or name not in previous.places:
             store.write(_config_name(name), dump_toml(base.config).encode())
             for rule in base.rules:
                 store.write(_rule_name(rule.digest), rule.text.encode())
@@ -253,9 +253,11 @@ def load_plan(store: Store) -> SweepPlan:
             SweepCondition(key, bases[base], dict(zip(columns, row, strict=True)))
             for key, base, row in zip(read["digests"], read["bases"], rows, strict=True)
         )
-        plain = {name: _tuples(read[name]) for name in _PLAIN}
-        places = {base: {name: tuple(own) for name, own in each.items()} for base, each in read["places"].items()}
-        return SweepPlan(**plain, places=places, conditions=conditions)
+        fields = {name: _tuples(read[name]) for name in _PLAIN}
+        places = {
+            base: {name: tuple(paths) for name, paths in mapping.items()} for base, mapping in read["places"].items()
+        }
+        return SweepPlan(**fields, places=places, conditions=conditions)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
         raise EnsembleError(f"{store.location}: {PLAN} cannot be read: {error}") from error
 

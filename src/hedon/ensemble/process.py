@@ -76,8 +76,10 @@ def make_here(jobs: Sequence[T], threads: int, display: JobListener[T]) -> dict[
         resource_tracker.ensure_running()
     with count_interrupts() as interrupted:
         while workers or (waiting and not interrupted.count):
-            while not interrupted.count and (given := next_share(waiting, [w.threads for w in workers], threads)):
-                workers.append(_start(waiting.pop(0), given))
+            while not interrupted.count and (
+                thread_count := next_share(waiting, [w.threads for w in workers], threads)
+            ):
+                workers.append(_start(waiting.pop(0), thread_count))
             for link in wait([worker.link for worker in workers], _LOOK_SECONDS):
                 worker = next(worker for worker in workers if worker.link is link)
                 if (outcome := _hear(worker, display)) is not None:
@@ -111,12 +113,12 @@ def _pass_on(worker: _Worker[Any]) -> None:
 
 def _start(job: T, threads: int) -> _Worker[T]:
     context = get_context("spawn")  # a fork would copy the engine's memory without its threads
-    ours, theirs = context.Pipe()
-    process = context.Process(target=work, args=(job, threads, theirs), name=job.folder.name)
+    parent_link, child_link = context.Pipe()
+    process = context.Process(target=work, args=(job, threads, child_link), name=job.folder.name)
     with _blocked_signals():
         process.start()
-    theirs.close()
-    return _Worker(job, threads, process, ours)
+    child_link.close()
+    return _Worker(job, threads, process, parent_link)
 
 
 @contextmanager
@@ -125,17 +127,17 @@ def _blocked_signals() -> Iterator[None]:
     if sys.platform == "win32":  # a new process receives Ctrl-C until it leaves the terminal
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    previous = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
 def _hear(worker: _Worker[T], display: JobListener[T]) -> Outcome | None:
     """Reads one message of a worker: a moment, which is displayed, or the outcome of its run, which is returned."""
     try:
-        said = worker.link.recv()
+        message = worker.link.recv()
     except (EOFError, OSError):  # it ended without a message, for example because it was killed for lack of memory
         worker.process.join()
         code = worker.process.exitcode or 0
@@ -145,8 +147,8 @@ def _hear(worker: _Worker[T], display: JobListener[T]) -> Outcome | None:
             else f"ended with exit code {code}"
         )
         return Outcome("failed", f"its process {cause}; the same command continues it")
-    if isinstance(said, Moment):
+    if isinstance(message, Moment):
         worker.ready = True
-        display.update(worker.job, said)
+        display.update(worker.job, message)
         return None
-    return said
+    return message

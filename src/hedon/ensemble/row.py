@@ -21,19 +21,19 @@ def world_rows(summary: Mapping[str, Any], digests: Sequence[str]) -> list[Row]:
     """
     rows = []
     for world, digest in zip(summary["worlds"], digests, strict=True):
-        rest = {name: value for name, value in world.items() if name not in (TIMED, "seed", SPECIES)}
-        row = {"seed": world["seed"], "digest": digest, **dict(_flat(rest))}
+        other_values = {name: value for name, value in world.items() if name not in (TIMED, "seed", SPECIES)}
+        row = {"seed": world["seed"], "digest": digest, **dict(_flat(other_values))}
         for species, part in world.get(SPECIES, {}).items():
             row |= {f"{species}.{name}": value for name, value in _flat(part)}
         rows.append(row)
     return rows
 
 
-def _flat(values: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+def _flat(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     for name, value in values.items():
         # Names of genes already include their kind.
-        place = name if not before or before == "weights" else f"{before}_{name}"
+        column = name if not prefix or prefix == "weights" else f"{prefix}_{name}"
         if isinstance(value, Mapping):
-            yield from _flat(value, place)
+            yield from _flat(value, column)
         else:
-            yield place, value
+            yield column, value

@@ -69,11 +69,20 @@ class RunJob:
         plan, callbacks = replace(self.plan, threads=threads), () if callback is None else (callback,)
         if self.past is None or holds_run(plan.out):
             return make(plan, callbacks).status
-        past, every = self.past, plan.checkpoint_seconds
-        begun = plan_branch(
-            past.run, plan.out, (), past.step, plan.steps, threads, plan.frames, every, plan.seeds, past.seed
+        past, interval = self.past, plan.checkpoint_seconds
+        branch = plan_branch(
+            past.run,
+            plan.out,
+            (),
+            past.step,
+            plan.steps,
+            threads,
+            plan.frames,
+            interval,
+            plan.seeds,
+            past.seed,
         )
-        return start_branch(begun, callbacks).status
+        return start_branch(branch, callbacks).status
 
 
 def run_jobs(ensemble: Ensemble, checkpoint_seconds: float = CHECKPOINT_SECONDS) -> list[RunJob]:
@@ -90,36 +99,36 @@ def run_jobs(ensemble: Ensemble, checkpoint_seconds: float = CHECKPOINT_SECONDS)
     """
     jobs: list[RunJob] = []
     for demand in ensemble.demands:
-        mine = [run for run in ensemble.runs if demand.holds(run.manifest) and demand.has_frames(run)]
-        reach = {run.path: steps_reached(run) for run in mine}
+        matching = [run for run in ensemble.runs if demand.holds(run.manifest) and demand.has_frames(run)]
+        reached = {run.path: steps_reached(run) for run in matching}
         too_short: dict[Path, int] = {}
         missing: dict[int, list[int]] = {}
         for seed, steps in demand.steps.items():
-            holders = [run for run in mine if seed in run.manifest.seeds]
-            longest = max(holders, key=lambda run: reach[run.path][seed], default=None)
+            holders = [run for run in matching if seed in run.manifest.seeds]
+            longest = max(holders, key=lambda run: reached[run.path][seed], default=None)
             if longest is None:
                 missing.setdefault(steps, []).append(seed)
-            elif reach[longest.path][seed] < steps:
+            elif reached[longest.path][seed] < steps:
                 too_short[longest.path] = max(too_short.get(longest.path, 0), steps)
 
-        for run in mine:
+        for run in matching:
             if (steps := too_short.get(run.path)) is not None:
-                left = sum(max(0, steps - int(min(done, steps))) for done in reach[run.path].values())
-                jobs.append(_job(demand, run.manifest.seeds, steps, run.path, checkpoint_seconds, left))
+                steps_left = sum(max(0, steps - int(min(done, steps))) for done in reached[run.path].values())
+                jobs.append(_job(demand, run.manifest.seeds, steps, run.path, checkpoint_seconds, steps_left))
         for steps, seeds in missing.items():
             if demand.name:
                 require_setting(ensemble.folder / demand.name, demand.digest)
             name = demand.name or f"{folder_name(demand.config)}-{seed_span(seeds)}"
-            free = free_folder(ensemble.folder / name, [job.folder for job in jobs])
-            left = (steps - (demand.past.step if demand.past else 0)) * len(seeds)
-            jobs.append(_job(demand, seeds, steps, free, checkpoint_seconds, left))
+            new_folder = free_folder(ensemble.folder / name, [job.folder for job in jobs])
+            steps_left = (steps - (demand.past.step if demand.past else 0)) * len(seeds)
+            jobs.append(_job(demand, seeds, steps, new_folder, checkpoint_seconds, steps_left))
     return sorted(jobs, key=lambda job: -job.world_steps)
 
 
-def _job(demand: Demand, seeds: Sequence[int], steps: int, out: Path, checkpoint: float, left: int) -> RunJob:
-    begin, rules = (demand.founders, demand.networks), demand.rules
-    plan = RunPlan(demand.config, seeds, steps, out, 0, demand.frames, checkpoint, *begin, rules=rules)
-    return RunJob(plan, left, demand.past)
+def _job(demand: Demand, seeds: Sequence[int], steps: int, out: Path, checkpoint: float, steps_left: int) -> RunJob:
+    initial, rules = (demand.founders, demand.networks), demand.rules
+    plan = RunPlan(demand.config, seeds, steps, out, 0, demand.frames, checkpoint, *initial, rules=rules)
+    return RunJob(plan, steps_left, demand.past)
 
 
 def folder_name(config: Config) -> str:

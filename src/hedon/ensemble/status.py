@@ -41,10 +41,10 @@ def sweep_status(plan: SweepPlan, store: Store) -> Status:
     for _, result in read_results(plan, store):
         done, seconds = done + 1, seconds + (result["seconds"] or 0.0)
         worlds += [{"extinct": world["extinct"]} for world in result["worlds"]]
-    begun, left = {}, 0.0
+    begun, worlds_left = {}, 0.0
     for batch in missing:
         share = None if store.folder is None else _share(store, batch.name, plan.steps)
-        left += len(batch.seeds) * (1.0 - (share or 0.0))
+        worlds_left += len(batch.seeds) * (1.0 - (share or 0.0))
         if share is not None:
             begun[describe(plan.conditions[batch.condition].settings, batch.seeds)] = share
     rate = seconds / len(worlds) if worlds else None  # time per world [s]
@@ -55,7 +55,7 @@ def sweep_status(plan: SweepPlan, store: Store) -> Status:
         extinct=sum(world["extinct"] for world in worlds),
         begun=begun,
         seconds=seconds,
-        seconds_left=None if rate is None else rate * left,
+        seconds_left=None if rate is None else rate * worlds_left,
     )
 
 
@@ -68,5 +68,5 @@ def _share(store: Store, name: str, steps: int) -> float | None:
         population = open_run(folder).population(skip_damaged=True)
     except (HedonError, OSError):  # it is being created, or was removed after it finished
         return None
-    last = population["step"].max() if population.height else 0
-    return float(last) / steps if isinstance(last, int) else 0.0
+    last_step = population["step"].max() if population.height else 0
+    return float(last_step) / steps if isinstance(last_step, int) else 0.0

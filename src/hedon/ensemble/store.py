@@ -79,7 +79,7 @@ class Store:
             EnsembleError: It cannot be written.
         """
         path = self._path(name)
-        parent, _, last = path.rpartition("/")
+        parent, _, file_name = path.rpartition("/")
         with self._asked(f"cannot write {name} to"):
             if parent not in self._made:
                 self._system.makedirs(parent, exist_ok=True)
@@ -87,23 +87,23 @@ class Store:
             if self.folder is not None:
                 write_atomically(Path(path), lambda file: file.write(content))
                 return
-            passing = f"{parent}/{PASSING}{secrets.token_hex(8)}-{last}"
+            temporary = f"{parent}/{PASSING}{secrets.token_hex(8)}-{file_name}"
             try:
-                self._system.pipe_file(passing, content)
-                self._system.mv(passing, path)
+                self._system.pipe_file(temporary, content)
+                self._system.mv(temporary, path)
             except Exception:
                 with suppress(Exception):
-                    self._system.rm_file(passing)
+                    self._system.rm_file(temporary)
                 raise
 
     def read(self, name: str) -> bytes | None:
         """Reads a content; None if there is none with this name. Raises EnsembleError if it cannot be read."""
         with self._asked(f"cannot read {name} of"), suppress(FileNotFoundError, NotADirectoryError):
-            for left in reversed(range(TRIES)):
+            for tries_left in reversed(range(TRIES)):
                 try:
                     return self._system.cat_file(self._path(name))
                 except Exception as error:
-                    if left == 0 or not _is_torn(error):
+                    if tries_left == 0 or not _is_torn(error):
                         raise
                     time.sleep(PAUSE)
         return None
@@ -120,10 +120,10 @@ class Store:
     def names(self, folder: str) -> list[str]:
         """The sorted names of the entries of a folder. Raises EnsembleError if they cannot be listed."""
         self._system.invalidate_cache()
-        found: list[str] = []
+        entries: list[str] = []
         with self._asked(f"cannot list {folder} of"), suppress(FileNotFoundError, NotADirectoryError):
-            found = self._system.ls(self._path(folder), detail=False)
-        names = (path.rstrip("/").rpartition("/")[2] for path in found)
+            entries = self._system.ls(self._path(folder), detail=False)
+        names = (path.rstrip("/").rpartition("/")[2] for path in entries)
         return sorted({name for name in names if name and not name.startswith(".")})
 
     def remove(self, name: str) -> None:
@@ -132,13 +132,13 @@ class Store:
             self._system.rm_file(self._path(name))
 
     @contextmanager
-    def _asked(self, what: str) -> Iterator[None]:
+    def _asked(self, action: str) -> Iterator[None]:
         """Converts any error of the file system's library to an EnsembleError with a one-line message."""
         try:
             yield
         except Exception as error:
-            why = error.strerror if self.folder is not None and isinstance(error, OSError) else None
-            raise EnsembleError(f"{what} {self.location}: {why or f'{type(error).__name__}: {error}'}") from error
+            reason = error.strerror if self.folder is not None and isinstance(error, OSError) else None
+            raise EnsembleError(f"{action} {self.location}: {reason or f'{type(error).__name__}: {error}'}") from error
 
     def _path(self, name: str) -> str:
         return f"{self._root.rstrip('/')}/{name}"
