@@ -219,11 +219,11 @@ def column_measure(column: str, titles: Mapping[str, str] | None = None) -> Meas
         titles: Titles of the measures that configs add, by name.
     """
     species, _, name = column.rpartition(".")
-    found = MEASURES.get(name)
-    if found is None and titles and name in titles:
-        found = Measure(name, titles[name], lambda world: None, usual=True)
-    if found is None and name.endswith("_mean") and name.startswith(_GENES):
-        found = gene_mean(name.removesuffix("_mean"))
-    if found is None or not species:
-        return found
-    return replace(found, name=column, title=f"{found.title}: {species}")
+    match = MEASURES.get(name)
+    if match is None and titles and name in titles:
+        match = Measure(name, titles[name], lambda world: None, usual=True)
+    if match is None and name.endswith("_mean") and name.startswith(_GENES):
+        match = gene_mean(name.removesuffix("_mean"))
+    if match is None or not species:
+        return match
+    return replace(match, name=column, title=f"{match.title}: {species}")

@@ -51,8 +51,8 @@ class Measure:
 
     def value(self, world: WorldRecord) -> float | None:
         """The number of a world; None if it has no value or, for a ratio, if the value is not above 0."""
-        found = self.of(world)
-        return None if found is None or not math.isfinite(found) or (self.ratio and found <= 0) else float(found)
+        value = self.of(world)
+        return None if value is None or not math.isfinite(value) or (self.ratio and value <= 0) else float(value)
 
     def scaled(self, value: float) -> float:
         """Converts a number to the scale on which worlds are compared."""

@@ -67,7 +67,7 @@ def at_common_age(measures: Iterable[Measure], until: float) -> list[Measure]:
         measures: Any measures.
         until: The age limit [step].
     """
-    return [restricted_lifetime(until) if each.name == RESTRICTED else each for each in measures]
+    return [restricted_lifetime(until) if measure.name == RESTRICTED else measure for measure in measures]
 
 
 def common_age(worlds: Iterable[WorldRecord]) -> float:
@@ -79,19 +79,21 @@ def common_age(worlds: Iterable[WorldRecord]) -> float:
     """
     worlds = list(worlds)
     curves = [survival_curve(*durations(w.born, w.last_step)) for w in worlds if w.extinct_step is None]
-    trusted = {curve.trusted_age(): curve for curve in curves if curve.trusted_age() > 0}
-    if not trusted:  # every world died out, or no agent died
-        gone = [survival_curve(*durations(w.born, w.last_step)).trusted_age() for w in worlds]
-        return max(gone, default=0.0)
-    return max((age for age in trusted if all(_readable(c, a, age) for a, c in trusted.items())), default=0.0)
+    curves_by_age = {curve.trusted_age(): curve for curve in curves if curve.trusted_age() > 0}
+    if not curves_by_age:  # every world died out, or no agent died
+        ages = [survival_curve(*durations(w.born, w.last_step)).trusted_age() for w in worlds]
+        return max(ages, default=0.0)
+    return max(
+        (age for age in curves_by_age if all(_readable(c, a, age) for a, c in curves_by_age.items())), default=0.0
+    )
 
 
-def _readable(curve: SurvivalCurve, trusted: float, until: float) -> bool:
+def _readable(curve: SurvivalCurve, trusted_age: float, until: float) -> bool:
     """Whether a curve's mean up to an age can be computed without reading it beyond its trusted age."""
-    if until <= trusted:
+    if until <= trusted_age:
         return True
-    left = float(curve.share[np.searchsorted(curve.age, trusted)])
-    return left * (until - trusted) <= _NEGLIGIBLE * restricted_mean(curve, trusted).mean
+    surviving_share = float(curve.share[np.searchsorted(curve.age, trusted_age)])
+    return surviving_share * (until - trusted_age) <= _NEGLIGIBLE * restricted_mean(curve, trusted_age).mean
 
 
 def measured(world: WorldRecord, measures: Sequence[Measure]) -> dict[str, float | None]:

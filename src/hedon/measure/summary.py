@@ -41,9 +41,12 @@ def summarize(run: Run) -> dict[str, Any]:
     """
     run = run.load()
     records = read_worlds([run])
-    species = {name: [each for each in records if each.species == name] for name in (r.species for r in records)}
-    fares = {name: [_fare(world) for world in own] for name, own in species.items()}
-    worlds = [_world(run, index, {name: own[index] for name, own in species.items()}, fares) for index in _indices(run)]
+    species = {name: [record for record in records if record.species == name] for name in (r.species for r in records)}
+    fares = {name: [_fare(world) for world in species_records] for name, species_records in species.items()}
+    worlds = [
+        _world(run, index, {name: species_records[index] for name, species_records in species.items()}, fares)
+        for index in _indices(run)
+    ]
     manifest = run.manifest
     means = {name: _means(species[name], fares[name]) for name in species}
     summary = {
@@ -108,13 +111,20 @@ def _means(worlds: Sequence[WorldRecord], fares: Sequence[Fare]) -> dict[str, An
             "mean_lifetime": mean_lifetime(born),
             "food_per_step": food_per_step(agents, worlds[0].food_kinds),
         },
-        "surviving": _over_worlds(worlds[0], [fare for fare, lives in zip(fares, surviving, strict=True) if lives]),
+        "surviving": _over_worlds(
+            worlds[0], [fare for fare, survives in zip(fares, surviving, strict=True) if survives]
+        ),
     }
 
 
 def _over_worlds(world: WorldRecord, fares: Sequence[Fare]) -> dict[str, Any]:
-    averaged = [each for each in measures_of(world.config).values() if each.averaged and each.applies(world)]
-    intervals = {each.name: mean_interval((fare[each.name] for fare in fares), within=each.within) for each in averaged}
+    averaged = [
+        measure for measure in measures_of(world.config).values() if measure.averaged and measure.applies(world)
+    ]
+    intervals = {
+        measure.name: mean_interval((fare[measure.name] for fare in fares), within=measure.within)
+        for measure in averaged
+    }
     weights = {name: mean_interval(fare["weights"][name]["mean"] for fare in fares) for name in world.weight_names}
     return {
         **{name: asdict(interval) for name, interval in intervals.items()},
@@ -128,27 +138,27 @@ def _world(
     manifest, rows = run.manifest, [world.population for world in species.values()]
     recorded = max(int(table["step"].to_numpy().max(initial=0)) for table in rows)
     steps = max(recorded, manifest.steps_done[index] if manifest.steps_done else 0)
-    made = steps - (manifest.parent.step if manifest.parent else 0)
-    begin = {
+    new_steps = steps - (manifest.parent.step if manifest.parent else 0)
+    header = {
         "seed": manifest.seeds[index],
         "steps": steps,
-        "steps_per_second": made / manifest.run_seconds if manifest.run_seconds else None,
+        "steps_per_second": new_steps / manifest.run_seconds if manifest.run_seconds else None,
     }
-    mine = {name: every[index] for name, every in fares.items()}
+    world_fares = {name: species_fares[index] for name, species_fares in fares.items()}
     if not run.columns.several:
-        return begin | dict(next(iter(mine.values())))
-    extinct = all(fare["extinct"] for fare in mine.values())
+        return header | dict(next(iter(world_fares.values())))
+    extinct = all(fare["extinct"] for fare in world_fares.values())
     meals = (*run.food_kinds, *run.columns.prey)
-    return begin | {
+    return header | {
         "extinct": extinct,
-        "extinct_step": max(fare["extinct_step"] for fare in mine.values()) if extinct else None,
+        "extinct_step": max(fare["extinct_step"] for fare in world_fares.values()) if extinct else None,
         "total": {
-            "alive": sum(fare["alive"] for fare in mine.values()),
-            "alive_mean": _sum(fare["alive_mean"] for fare in mine.values()),
-            **{name: sum(fare[name] for fare in mine.values()) for name in _COUNTS},
+            "alive": sum(fare["alive"] for fare in world_fares.values()),
+            "alive_mean": _sum(fare["alive_mean"] for fare in world_fares.values()),
+            **{name: sum(fare[name] for fare in world_fares.values()) for name in _COUNTS},
             "eaten": {meal: sum(int(table[f"eaten_{meal}"].sum()) for table in rows) for meal in meals},
         },
-        "species": mine,
+        "species": world_fares,
     }
 
 
@@ -163,5 +173,5 @@ def _fare(world: WorldRecord) -> Fare:
 
 
 def _sum(values: Iterable[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return sum(known) if known else None
+    recorded = [value for value in values if value is not None]
+    return sum(recorded) if recorded else None

@@ -20,7 +20,9 @@ _BEGIN: dict[str, str] = {
 
 def _averaged(*, everywhere: bool) -> dict[str, str]:
     """Keys of the means over worlds: of the measures that all worlds have, or of the other measures."""
-    averaged = [each.name for each in MEASURES.values() if each.averaged and (each.condition is None) == everywhere]
+    averaged = [
+        measure.name for measure in MEASURES.values() if measure.averaged and (measure.condition is None) == everywhere
+    ]
     return {name: f"worlds' `{name}`, mean and interval" for name in averaged}
 
 
@@ -73,7 +75,7 @@ _WORLD: dict[str, str] = {
 }
 
 FARE_KEYS: dict[str, str] = {
-    **{each.name: each.documentation for each in MEASURES.values() if each.condition is None},
+    **{measure.name: measure.documentation for measure in MEASURES.values() if measure.condition is None},
     "eaten": "by food kind: foods eaten; and by species: agents eaten",
     "weights": "by genome column: mean and sd over the living at the end, or when somebody lived last",
     "ledger": "sums of energy: initial, eaten, forgiven, basic, action, capped, lost, shared, final; and "
@@ -95,7 +97,9 @@ WORLD_SEVERAL_KEYS: dict[str, str] = {
 }
 """Keys of a world with several species."""
 
-CAUSE_KEYS: dict[str, str] = {each.name: each.documentation for each in MEASURES.values() if each.condition is not None}
+CAUSE_KEYS: dict[str, str] = {
+    measure.name: measure.documentation for measure in MEASURES.values() if measure.condition is not None
+}
 """Keys in addition to `FARE_KEYS` if agents die of more than age and energy."""
 
 RESERVED = frozenset().union(

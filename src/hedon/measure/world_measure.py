@@ -30,41 +30,41 @@ def measures_of(config: Config) -> Mapping[str, Measure]:
 
 def own_measures(config: Config) -> dict[str, Measure]:
     """The measures that a config adds, by name. Raises the same errors as `measures_of`."""
-    columns, made, problems = columns_of(config), {}, []
-    for name, each in config.measure.items():
-        problem = _name_problem(name, columns) or _expression_problem(name, each, columns)
+    columns, measures, problems = columns_of(config), {}, []
+    for name, definition in config.measure.items():
+        problem = _name_problem(name, columns) or _expression_problem(name, definition, columns)
         if problem is None:
-            made[name] = _measure(name, each)
+            measures[name] = _measure(name, definition)
         else:
             problems.append(problem)
     if problems:
         raise ConfigError(config.name, problems)
-    return made
+    return measures
 
 
 def titles_of(configs: Iterable[Config]) -> dict[str, str]:
     """The titles of the measures that these configs add, by name."""
-    return {name: each.title or name for config in configs for name, each in config.measure.items()}
+    return {name: definition.title or name for config in configs for name, definition in config.measure.items()}
 
 
 def own_measure(name: str) -> Measure:
     """A config's own measure by its name, for claims; a world whose config lacks it has no value."""
 
     def of(world: WorldRecord) -> float | None:
-        each = world.config.measure.get(name)
-        return None if each is None else _value(each, world)
+        definition = world.config.measure.get(name)
+        return None if definition is None else _value(definition, world)
 
     return Measure(name, name, of)
 
 
-def _measure(name: str, each: MeasureConfig) -> Measure:
-    return Measure(name, each.title or name, lambda world: _value(each, world), usual=True, averaged=True)
+def _measure(name: str, definition: MeasureConfig) -> Measure:
+    return Measure(name, definition.title or name, lambda world: _value(definition, world), usual=True, averaged=True)
 
 
-def _value(each: MeasureConfig, world: WorldRecord) -> float | None:
-    table = world.population if each.table == "population" else world.agents
+def _value(definition: MeasureConfig, world: WorldRecord) -> float | None:
+    table = world.population if definition.table == "population" else world.agents
     try:
-        value = table.select(_expression(each.of)).item()
+        value = table.select(_expression(definition.of)).item()
     except PolarsError:  # this species lacks a column that other species have
         return None
     return None if value is None or not math.isfinite(value) else float(value)
@@ -85,23 +85,23 @@ def _name_problem(name: str, columns: Columns) -> Problem | None:
     return None
 
 
-def _expression_problem(name: str, each: MeasureConfig, columns: Columns) -> Problem | None:
+def _expression_problem(name: str, definition: MeasureConfig, columns: Columns) -> Problem | None:
     """The problem with an expression, if any, found by evaluating it on an empty table of a run."""
-    place, value = f"measure.{name}.of", format_value(each.of)
-    schema = run_tables(columns)[each.table].polars_schema
-    if not each.of.strip():
+    place, value = f"measure.{name}.of", format_value(definition.of)
+    schema = run_tables(columns)[definition.table].polars_schema
+    if not definition.of.strip():
         return Problem(place, 'must be an expression, as in "sum(births) / sum(agent_steps)"', value)
     try:
-        found = pl.DataFrame(schema=schema).select(_expression(each.of))
+        result = pl.DataFrame(schema=schema).select(_expression(definition.of))
     except ColumnNotFoundError as error:
         column = next(iter(re.findall(r'"([^"]+)"', str(error))), "")
-        rule = f"the table {each.table} has no column {column} (docs/records.md lists them)"
+        rule = f"the table {definition.table} has no column {column} (docs/records.md lists them)"
         return Problem(place, rule, value, nearest(column, list(schema)))
     except PolarsError as error:
         return Problem(place, f"cannot be computed: {str(error).partition(chr(10))[0][:200]}", value)
-    if found.height != 1:
+    if result.height != 1:
         return Problem(place, "must give one number for all rows: use aggregates such as sum, avg, min or max", value)
-    kind = found.dtypes[0]
+    kind = result.dtypes[0]
     return None if kind.is_numeric() or kind == pl.Boolean else Problem(place, f"must give a number, not {kind}", value)
 
 
@@ -117,8 +117,8 @@ def world_row(records: Sequence[WorldRecord]) -> dict[str, Any]:
     """
     row: dict[str, Any] = {"seed": records[0].seed, "extinct": all(each.extinct_step is not None for each in records)}
     for record in records:
-        before = f"{record.species}." if len(records) > 1 else ""
+        prefix = f"{record.species}." if len(records) > 1 else ""
         measures = [each for each in measures_of(record.config).values() if each.applies(record)]
         measures += map(gene_mean, record.weight_names)
-        row |= {f"{before}{measure.name}": measure.of(record) for measure in measures}
+        row |= {f"{prefix}{measure.name}": measure.of(record) for measure in measures}
     return row
