@@ -67,12 +67,12 @@ def slope_test(name: str, x: ArrayLike, y: ArrayLike, extinct: int, *, above: bo
         extinct: Number of worlds that died out.
         above: Whether the claim holds above 0.
     """
-    across, values = np.asarray(x, np.float64), np.asarray(y, np.float64)
-    if len(across) < 3 or np.ptp(across) == 0:
-        return Test(name, len(across), len(across), extinct, above)
-    slope, _, _, p, error = np.asarray(stats.linregress(across, values)).tolist()
-    reach = float(stats.t.ppf((1 + LEVEL) / 2, len(across) - 2)) * error
-    return Test(name, len(across), len(across), extinct, above, slope, slope - reach, slope + reach, p)
+    x_values, values = np.asarray(x, np.float64), np.asarray(y, np.float64)
+    if len(x_values) < 3 or np.ptp(x_values) == 0:
+        return Test(name, len(x_values), len(x_values), extinct, above)
+    slope, _, _, p, error = np.asarray(stats.linregress(x_values, values)).tolist()
+    half_width = float(stats.t.ppf((1 + LEVEL) / 2, len(x_values) - 2)) * error
+    return Test(name, len(x_values), len(x_values), extinct, above, slope, slope - half_width, slope + half_width, p)
 
 
 def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above: bool) -> Test:
@@ -85,13 +85,13 @@ def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above:
         extinct: Number of worlds that died out.
         above: Whether the claim holds above 0.
     """
-    known = np.asarray(values, np.float64)
-    if len(known) < 2:
-        return Test(name, worlds, len(known), extinct, above)
-    found = mean_interval(known.tolist())
-    mean, low, high = (np.nan if bound is None else bound for bound in (found.mean, found.low, found.high))
-    p = float(np.asarray(stats.ttest_1samp(known, 0.0))[1])
-    return Test(name, worlds, len(known), extinct, above, mean, low, high, p)
+    sample = np.asarray(values, np.float64)
+    if len(sample) < 2:
+        return Test(name, worlds, len(sample), extinct, above)
+    interval = mean_interval(sample.tolist())
+    mean, low, high = (np.nan if bound is None else bound for bound in (interval.mean, interval.low, interval.high))
+    p = float(np.asarray(stats.ttest_1samp(sample, 0.0))[1])
+    return Test(name, worlds, len(sample), extinct, above, mean, low, high, p)
 
 
 def count_test(name: str, count: int, worlds: int, extinct: int, chance: float, *, above: bool) -> Test:
@@ -121,8 +121,8 @@ def verdict_table(name: str, tests: Sequence[Test], note: str = "", named: int =
         note: Remark below the table.
         named: Number of tests that the study names, if more than these.
     """
-    others = [1.0] * (named - len(tests))
-    corrected = holm([*(1.0 if np.isnan(test.p) else test.p for test in tests), *others])[: len(tests)]
+    untested = [1.0] * (named - len(tests))
+    corrected = holm([*(1.0 if np.isnan(test.p) else test.p for test in tests), *untested])[: len(tests)]
     rows: list[Mapping[str, Any]] = [
         {
             "claim": test.name,

@@ -43,24 +43,24 @@ def own_score(world: WorldRecord) -> float | None:
 def hunter_score(world: WorldRecord) -> float | None:
     """The score of the weight for seeing a species that eats one's own, the lowest if several; None as for `score`."""
     scores = [score(f"w_see_{name}", world) for name in hunters(world.config, world.species)]
-    return min((each for each in scores if each is not None), default=None)
+    return min((value for value in scores if value is not None), default=None)
 
 
 def fear(world: WorldRecord) -> float | None:
     """The score of the dislike of seeing a species that eats one's own; None as for `score`."""
-    found = hunter_score(world)
-    return None if found is None else -found
+    value = hunter_score(world)
+    return None if value is None else -value
 
 
 def _obstacle_fear(world: WorldRecord) -> float | None:
-    found = score("w_see_obstacle", world)
-    return None if found is None else -found
+    value = score("w_see_obstacle", world)
+    return None if value is None else -value
 
 
 def _beyond_drift(measure: WorldNumber, world: WorldRecord) -> float | None:
     """How far a score is above the 97.5 % point of neutral genes; None as for the score."""
-    found = measure(world)
-    return None if found is None else found - FAR
+    value = measure(world)
+    return None if value is None else value - FAR
 
 
 def _prey(preset: str) -> Condition:

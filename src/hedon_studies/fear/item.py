@@ -63,8 +63,8 @@ _REWARDS = {
 
 def _courses(inputs: ItemInputs) -> Iterator[NamedFigure]:
     conditions = {PREY: (MAIN, SQUARE), PREDATOR: (HUNTERS,)}
-    for name, mine in conditions.items():
-        yield from draw_courses(f"sequel-history-{name}", f"How do the rewards of {name} evolve?", mine, inputs)
+    for name, group in conditions.items():
+        yield from draw_courses(f"sequel-history-{name}", f"How do the rewards of {name} evolve?", group, inputs)
 
 
 def _numbers(inputs: ItemInputs) -> Iterator[NamedFigure]:
@@ -106,19 +106,19 @@ def _survival(inputs: ItemInputs) -> Iterator[ResultTable]:
     rows = []
     for label, group in worlds.items():
         until = max((world.last_step for world in group), default=SCALE.steps)
-        found = species_loss(group, until)
-        gone = sum(world.extinct_step is not None for world in group)
-        apart = sum(world.extinct_step is None and world.apart_step is not None for world in group)
+        loss = species_loss(group, until)
+        extinct_count = sum(world.extinct_step is not None for world in group)
+        apart_count = sum(world.extinct_step is None and world.apart_step is not None for world in group)
         rows.append(
             {
                 "condition": label,
-                "worlds": found.worlds,
-                "it_died_out": gone,
-                "another_died_out": apart,
-                "last": 1 - found.share,
-                "low": 1 - found.high,
-                "high": 1 - found.low,
-                "by_step": int(found.known_until),
+                "worlds": loss.worlds,
+                "it_died_out": extinct_count,
+                "another_died_out": apart_count,
+                "last": 1 - loss.share,
+                "low": 1 - loss.high,
+                "high": 1 - loss.low,
+                "by_step": int(loss.known_until),
             }
         )
     yield make_table(
@@ -143,10 +143,10 @@ def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     name, question = "sequel-groups", "Do prey keep together, and away from predators?"
     frames, worlds = inputs.frames.get(MAIN.label, ()), inputs.worlds.get(MAIN.label, ())
     if not frames or len(frames) != len(worlds):
-        drawn = hedon.figure.draw_message("no positions were recorded")
-        yield NamedFigure(name, question, drawn, missing((MAIN,), inputs))
+        figure = hedon.figure.draw_message("no positions were recorded")
+        yield NamedFigure(name, question, figure, missing((MAIN,), inputs))
         return
-    found = {
+    company_by_seed = {
         world.seed: company(world, rows, hunters(world.config, world.species))
         for world, rows in zip(worlds, frames, strict=True)
     }
@@ -155,9 +155,10 @@ def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         "of a prey, itself included. Gray: as many prey placed evenly by chance. Means over "
         f"{hedon.figure.SMOOTH} frames."
     )
-    yield NamedFigure(name, question, hedon.figure.draw_company(found, PREY, PREDATOR), caption)
+    yield NamedFigure(name, question, hedon.figure.draw_company(company_by_seed, PREY, PREDATOR), caption)
     means = [
-        {"seed": seed, **rows.select(pl.exclude("step").mean()).row(0, named=True)} for seed, rows in found.items()
+        {"seed": seed, **rows.select(pl.exclude("step").mean()).row(0, named=True)}
+        for seed, rows in company_by_seed.items()
     ]
     yield make_table("sequel_groups", "Groups of prey, and distances to predators", means, "Means over frames.")
 

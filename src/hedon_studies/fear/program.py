@@ -58,14 +58,17 @@ def window(world: WorldRecord, number: int) -> dict[str, float]:
 def _make(inputs: ItemInputs) -> Iterator[ResultTable]:
     worlds = present((PREY, PREDATORS, PITFALL), inputs)
     prey, predators = worlds.get(PREY.label, ()), worlds.get(PREDATORS.label, ())
-    hunted: list[tuple[str, Sequence[WorldRecord], str]] = [
+    predator_quantities: list[tuple[str, Sequence[WorldRecord], str]] = [
         ("prey alive", prey, "alive"),
         ("predators alive", predators, "alive"),
         *((column, prey, column) for column in PREY_COLUMNS),
     ]
-    fallen = [(column, worlds.get(PITFALL.label, ()), column) for column in PITFALL_COLUMNS]
+    pitfall_quantities = [(column, worlds.get(PITFALL.label, ()), column) for column in PITFALL_COLUMNS]
     note = sentences(_READ, missing((PREY, PREDATORS, PITFALL), inputs))
-    for name, run, quantities in (("predator", PREDATOR_RUN, hunted), ("pitfall", PITFALL_RUN, fallen)):
+    for name, run, quantities in (
+        ("predator", PREDATOR_RUN, predator_quantities),
+        ("pitfall", PITFALL_RUN, pitfall_quantities),
+    ):
         rows = [
             {"window": number, "quantity": quantity, "program": value, **_range(group, number, column)}
             for number, values in run.items()

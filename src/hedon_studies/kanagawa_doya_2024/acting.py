@@ -51,10 +51,10 @@ def make_acting(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     worlds = present(CONDITIONS, inputs)
     rows = world_rows(inputs, CONDITIONS, RESPONSES)
     if worlds:
-        indices, end = world_indices(worlds.values()), max(steps_reached(found) for found in worlds.values())
+        indices, end = world_indices(worlds.values()), max(steps_reached(group) for group in worlds.values())
         courses = {
-            label: history(stack(found, "population", indices), ("normal",), points=50, end=end)
-            for label, found in worlds.items()
+            label: history(stack(group, "population", indices), ("normal",), points=50, end=end)
+            for label, group in worlds.items()
         }
         question = "Do worlds fare alike, whichever weights their agents act by?"
         yield NamedFigure("acting_courses", question, hedon.figure.draw_courses(courses, _PANELS), _DRAWN)

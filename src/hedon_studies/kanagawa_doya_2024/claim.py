@@ -57,7 +57,7 @@ def score(weight: str, world: WorldRecord) -> float | None:
         weight: Genome column of the weight.
         world: The world.
     """
-    return next((found.score for found in standard_drift(world, LAST_AGENTS) if found.weight == weight), None)
+    return next((drift.score for drift in standard_drift(world, LAST_AGENTS) if drift.weight == weight), None)
 
 
 def _above(limit: float, weight: str, world: WorldRecord) -> float | None:
@@ -94,21 +94,29 @@ def _lifespan(world: WorldRecord) -> float | None:
 def _weight_claims() -> Iterator[Claim]:
     for preset in ("baseline", "large", "relocation", "poor", "poison"):
         text, food = "the weight of food evolves positive, in most worlds at least", partial(last_mean, "w_normal")
-        every = (SEEDS, SEEDS)
-        yield _claim("food weight positive", _about(preset), text, food, "share", "> 0", low=MOST, reported_count=every)
-    text, above = "in most worlds the weight of food is above 4", partial(_above, 4.0, "w_normal")
-    yield _claim("food weight above 4", _about("baseline"), text, above, "share", "mostly > 4", low=MOST)
+        all_seeds = (SEEDS, SEEDS)
+        yield _claim(
+            "food weight positive", _about(preset), text, food, "share", "> 0", low=MOST, reported_count=all_seeds
+        )
+    text, is_above = "in most worlds the weight of food is above 4", partial(_above, 4.0, "w_normal")
+    yield _claim("food weight above 4", _about("baseline"), text, is_above, "share", "mostly > 4", low=MOST)
     for preset in ("baseline", "large"):
-        text, two = "the weight of action has two modes, largely positive or slightly negative", "w_action"
-        yield _claim("two modes of action", _about(preset), text, partial(last_mean, two), "modes", "two")
+        text, gene = "the weight of action has two modes, largely positive or slightly negative", "w_action"
+        yield _claim("two modes of action", _about(preset), text, partial(last_mean, gene), "modes", "two")
     for weight, name in WEIGHTS.items():
         text = f"the weight of {name} does not go where neutral genes of the same worlds go"
-        found = partial(score, weight)
-        yield _claim(f"{name} weight no random walk", _about("baseline"), text, found, "walk", "differs")
+        measure = partial(score, weight)
+        yield _claim(f"{name} weight no random walk", _about("baseline"), text, measure, "walk", "differs")
         for preset in ("small", "centered"):
             text = f"hardly any evolution: {name} moves at most {SAME_FACTOR:g} times as far as neutral genes"
             yield _claim(
-                f"{name} weight hardly evolves", _about(preset), text, found, "distance", "hardly any", high=SAME_FACTOR
+                f"{name} weight hardly evolves",
+                _about(preset),
+                text,
+                measure,
+                "distance",
+                "hardly any",
+                high=SAME_FACTOR,
             )
     text, negative = "in most worlds the weight of action is negative", partial(_negative, "w_action")
     yield _claim("action weight negative", _about("relocation"), text, negative, "share", "mostly < 0", low=MOST)
@@ -120,23 +128,23 @@ def _weight_claims() -> Iterator[Claim]:
     yield _claim(
         "poison weight positive", _about("poison"), text, partial(last_mean, poison), "share", "mostly > 0", low=MOST
     )
-    text, below = "in most worlds the weight of poison is below that of food", partial(_below, poison, "w_normal")
-    yield _claim("poison weight below food", _about("poison"), text, below, "share", "below", low=MOST)
+    text, is_below = "in most worlds the weight of poison is below that of food", partial(_below, poison, "w_normal")
+    yield _claim("poison weight below food", _about("poison"), text, is_below, "share", "below", low=MOST)
 
 
 def _table_claims() -> Iterator[Claim]:
-    for preset, figures in PAPER.items():
+    for preset, reported in PAPER.items():
         for name, value, measure, unit, factor in (
-            ("mean lifetime", figures.mean_lifetime, MEASURES["mean_lifetime"].of, "step", SAME_LIFETIME),
-            ("food per step", figures.food_per_step, MEASURES["food_per_step"].of, "1/step", SAME_FACTOR),
+            ("mean lifetime", reported.mean_lifetime, MEASURES["mean_lifetime"].of, "step", SAME_LIFETIME),
+            ("food per step", reported.food_per_step, MEASURES["food_per_step"].of, "1/step", SAME_FACTOR),
         ):
             if value is not None:
                 text = f"{name} [{unit}], within a factor of {factor:g}"
                 low, high = value / factor, value * factor
                 yield _claim(name, _about(preset), text, measure, "ratio", f"{value:g}", low, high)
         for name, bounds, measure in (
-            ("population", figures.population, MEASURES["alive_mean"].of),
-            ("generation", figures.generation, MEASURES["generation"].of),
+            ("population", reported.population, MEASURES["alive_mean"].of),
+            ("generation", reported.generation, MEASURES["generation"].of),
         ):
             if bounds is not None:
                 text = f"{name} at the end, {bounds[0]} to {bounds[1]}"
@@ -152,15 +160,15 @@ def _table_claims() -> Iterator[Claim]:
 def _extinction_claims() -> Iterator[Claim]:
     for condition, share in CONDITIONS.items():
         if share > MOST:
-            low, high, what = MOST, math.inf, "most worlds die out"
+            low, high, outcome = MOST, math.inf, "most worlds die out"
         elif share > SOME[0]:
-            (low, high), what = SOME, "some worlds die out and some do not"
+            (low, high), outcome = SOME, "some worlds die out and some do not"
         else:
-            low, high, what = -math.inf, MOST, "most worlds live on"
+            low, high, outcome = -math.inf, MOST, "most worlds live on"
         yield _claim(
             "extinction",
             condition,
-            f"{what} by step {EXTINCTION_STEP:,}, at costs {condition.label.replace(', ', ' and ')}",
+            f"{outcome} by step {EXTINCTION_STEP:,}, at costs {condition.label.replace(', ', ' and ')}",
             _extinct,
             "extinction",
             f"{100 * share:.0f} %",

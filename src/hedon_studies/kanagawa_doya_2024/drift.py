@@ -55,18 +55,18 @@ def make_drift(
     """
     worlds = present(conditions, inputs)
     scores = {
-        label: {w.seed: found for w in group if (found := standard_drift(w, LAST_AGENTS))}
+        label: {w.seed: drifts for w in group if (drifts := standard_drift(w, LAST_AGENTS))}
         for label, group in worlds.items()
     }
     note = missing_note(inputs, conditions, scale)
-    groups = {ALL: [found for by_seed in scores.values() for found in by_seed.values()]}
+    groups = {ALL: [drifts for by_seed in scores.values() for drifts in by_seed.values()]}
     groups |= {label: list(by_seed.values()) for label, by_seed in scores.items()}
     tests = {label: list(_test_rows(label, group, rewards)) for label, group in groups.items()}
     question = "Which weights went further, or more in one direction, than drift?"
     if groups[ALL]:
         means = {row["weight"]: row for row in tests[ALL] if row["test"] == "direction"}
-        drawn = hedon.figure.draw_scores(_points(scores), {**rewards, **MARKER}, means)
-        yield NamedFigure(name, question, drawn, _DRAWN)
+        figure = hedon.figure.draw_scores(_points(scores), {**rewards, **MARKER}, means)
+        yield NamedFigure(name, question, figure, _DRAWN)
     yield make_table(
         f"{name}_all", "Weights against drift, all conditions", tests.pop(ALL), sentences(_TESTS, _SHARED, note)
     )
@@ -80,11 +80,11 @@ def _test_rows(
 ) -> Iterator[dict[str, Any]]:
     """Both tests of each weight, without bounds below five worlds."""
     names = {**rewards, **MARKER}
-    known = [[found for found in world if found.weight in names] for world in worlds]
-    for test in drift_tests(known, list(rewards), list(MARKER), {}, np.random.default_rng(SEED)):
+    matching = [[drift for drift in world if drift.weight in names] for world in worlds]
+    for test in drift_tests(matching, list(rewards), list(MARKER), {}, np.random.default_rng(SEED)):
         if test.test == "marker":
             continue
-        positive = sum(found.score > 0 for world in known for found in world if found.weight == test.weight)
+        positive = sum(drift.score > 0 for world in matching for drift in world if drift.weight == test.weight)
         row = {
             "condition": label,
             "weight": test.weight,
@@ -99,14 +99,14 @@ def _test_rows(
 def _world_rows(scores: Scores) -> Iterator[dict[str, Any]]:
     for label, by_seed in scores.items():
         for seed, drifts in by_seed.items():
-            for found in drifts:
-                yield {"condition": label, "seed": seed} | vars(found)
+            for drift in drifts:
+                yield {"condition": label, "seed": seed} | vars(drift)
 
 
 def _points(scores: Scores) -> dict[str, dict[int, dict[str, float]]]:
     """The score of each weight by condition and seed."""
     return {
-        label: {seed: {found.weight: found.score for found in drifts} for seed, drifts in by_seed.items()}
+        label: {seed: {drift.weight: drift.score for drift in drifts} for seed, drifts in by_seed.items()}
         for label, by_seed in scores.items()
     }
 

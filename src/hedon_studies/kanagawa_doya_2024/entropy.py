@@ -58,10 +58,10 @@ def make_entropy(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """The figure and tables of the study."""
     missing = missing_note(inputs, CONDITIONS, SCALE)
     worlds = present(CONDITIONS, inputs)
-    bins = {label: [appetite(world) for world in found] for label, found in worlds.items()}
+    bins = {label: [appetite(world) for world in group] for label, group in worlds.items()}
     rows = world_rows(inputs, CONDITIONS, _ASKED)
     if worlds:
-        courses = {label: _course(found) for label, found in worlds.items()}
+        courses = {label: _course(group) for label, group in worlds.items()}
         question = "How large must the weight of food be before agents eat well?"
         yield NamedFigure("entropy_appetite", question, figure.draw_appetite(bins, courses), _DRAWN)
     yield make_table(
@@ -70,13 +70,13 @@ def make_entropy(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         [row for measure in _ASKED for row in change(rows, measure, WITH, WITHOUT)],
         sentences(_DIFFERENCE, missing),
     )
-    eaten = [
+    appetite_rows = [
         {"condition": label, "seed": world.seed} | vars(part)
-        for label, found in worlds.items()
-        for world, world_bins in zip(found, bins[label], strict=True)
+        for label, group in worlds.items()
+        for world, world_bins in zip(group, bins[label], strict=True)
         for part in world_bins
     ]
-    yield make_table("entropy_appetite", "Food eaten, by weight of food", eaten, _APPETITE, shown=False)
+    yield make_table("entropy_appetite", "Food eaten, by weight of food", appetite_rows, _APPETITE, shown=False)
     yield make_table("entropy_worlds", "The worlds of the study of entropy", rows, missing, shown=False)
 
 

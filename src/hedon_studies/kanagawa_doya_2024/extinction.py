@@ -31,36 +31,38 @@ CONDITIONS = {_condition(*costs): share for costs, share in EXTINCTION.items()}
 
 def _make(inputs: ItemInputs) -> Iterator[ResultTable]:
     worlds = present(CONDITIONS, inputs)
-    cut = {label: [world.until(EXTINCTION_STEP) for world in group] for label, group in worlds.items()}
+    truncated = {label: [world.until(EXTINCTION_STEP) for world in group] for label, group in worlds.items()}
     title = "Extinction by the costs of living and of action"
     rows = [
-        _row(condition, cut[condition.label], share)
+        _row(condition, truncated[condition.label], share)
         for condition, share in CONDITIONS.items()
-        if condition.label in cut
+        if condition.label in truncated
     ]
     yield make_table("extinction", title, rows, sentences(_READ, missing(CONDITIONS, inputs)))
-    by_world = [_world_row(label, world) for label, group in cut.items() for world in group]
+    by_world = [_world_row(label, world) for label, group in truncated.items() for world in group]
     yield make_table("extinction-world", f"{title}, world by world", by_world, shown=False)
 
 
 def _row(condition: Condition, worlds: Sequence[WorldRecord], paper: float) -> dict[str, Any]:
-    found = world_extinction(worlds, _furthest_step(worlds))
-    whole = all(world.extinct_step is not None or world.last_step >= EXTINCTION_STEP for world in worlds)
+    extinction = world_extinction(worlds, _furthest_step(worlds))
+    is_complete = all(world.extinct_step is not None or world.last_step >= EXTINCTION_STEP for world in worlds)
     paper_count = round(paper * EXTINCTION_SEEDS)
-    died = np.array([world.extinct_step is not None for world in worlds])
-    lasted = np.array([world.last_step if world.extinct_step is None else world.extinct_step for world in worlds])
-    median, _, _ = survival_curve(lasted.astype(np.float64), died).quantile()
+    is_extinct = np.array([world.extinct_step is not None for world in worlds])
+    durations = np.array([world.last_step if world.extinct_step is None else world.extinct_step for world in worlds])
+    median, _, _ = survival_curve(durations.astype(np.float64), is_extinct).quantile()
     living = [run_tail(world.population) for world in worlds if world.extinct_step is None]
     return {
         "costs": condition.label,
-        "extinct": found.extinct,
+        "extinct": extinction.extinct,
         "worlds": len(worlds),
-        "share": found.share,
-        "low": found.low,
-        "high": found.high,
+        "share": extinction.share,
+        "low": extinction.low,
+        "high": extinction.high,
         "paper": paper,
-        "p_paper": fisher_mid_p(found.extinct, len(worlds), paper_count, EXTINCTION_SEEDS) if whole else None,
-        "by_step": int(found.known_until),
+        "p_paper": fisher_mid_p(extinction.extinct, len(worlds), paper_count, EXTINCTION_SEEDS)
+        if is_complete
+        else None,
+        "by_step": int(extinction.known_until),
         "median_step": median,
         "alive": mean_interval(map(mean_alive, living)).mean,
         "energy": mean_interval(map(mean_energy, living)).mean,

@@ -54,8 +54,8 @@ _CELL = (
 
 def cell_label(cell: Cell) -> str:
     """The label of a combination of faults."""
-    there = [name for name, is_there in zip(FACTORS, cell, strict=True) if is_there]
-    return "all" if len(there) == len(FACTORS) else " + ".join(there) or "none"
+    present_faults = [name for name, is_present in zip(FACTORS, cell, strict=True) if is_present]
+    return "all" if len(present_faults) == len(FACTORS) else " + ".join(present_faults) or "none"
 
 
 def _in_order() -> list[Cell]:
@@ -69,7 +69,7 @@ CELLS = {cell_label(cell): cell for cell in _in_order()}
 
 
 def _condition(label: str, cell: Cell) -> Condition:
-    overrides = tuple(setting for setting, is_there in zip(FACTORS.values(), cell, strict=True) if is_there)
+    overrides = tuple(setting for setting, is_present in zip(FACTORS.values(), cell, strict=True) if is_present)
     return Condition(label, "baseline", overrides, fidelity="corrected")
 
 
@@ -90,15 +90,15 @@ def make_faults(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     )
     worlds = make_table("fault_worlds", "The worlds of the study of faults", rows, missing, shown=False)
     until = max((row["until"] for row in rows), default=0.0)
-    told = set(effects.rows["effect"]) if effects.rows.height else set()
+    shown_effects = set(effects.rows["effect"]) if effects.rows.height else set()
     if rows:
-        there = [label for label in CELLS if inputs.worlds.get(label)]
-        cells = figure.draw_cells(worlds.rows, there, _SHOWN)
+        present_labels = [label for label in CELLS if inputs.worlds.get(label)]
+        cells = figure.draw_cells(worlds.rows, present_labels, _SHOWN)
         yield NamedFigure("fault_cells", "What do the faults of the released code do?", cells, _CELLS_DRAWN)
-    if told:
-        names = [name for name in map(effect_name, all_effects(len(FACTORS))) if name in told]
-        drawn = figure.draw_effects(effects.rows, names, _SHOWN)
-        yield NamedFigure("fault_effects", "What does each do, alone and together?", drawn, _DRAWN)
+    if shown_effects:
+        names = [name for name in map(effect_name, all_effects(len(FACTORS))) if name in shown_effects]
+        effects_figure = figure.draw_effects(effects.rows, names, _SHOWN)
+        yield NamedFigure("fault_effects", "What does each do, alone and together?", effects_figure, _DRAWN)
     yield effects
     yield make_table(
         "fault_cells",
@@ -106,8 +106,8 @@ def make_faults(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         _cell_rows(rows),
         sentences(_CELL.format(until=until), missing),
     )
-    everything = [row for found in rows_of_effects.values() for row in found]
-    yield make_table("fault_effects_all", "Effects on everything that is measured", everything, _EFFECT, shown=False)
+    all_rows = [row for effect_rows in rows_of_effects.values() for row in effect_rows]
+    yield make_table("fault_effects_all", "Effects on everything that is measured", all_rows, _EFFECT, shown=False)
     yield worlds
 
 
@@ -127,8 +127,8 @@ def _fit(rows: list[dict[str, Any]], measure: Measure) -> FactorialFit:
 
 def _effect_rows(measure: Measure, fit: FactorialFit) -> Iterator[dict[str, Any]]:
     for effect in fit.effects:
-        known = {name: getattr(effect, name) for name in ("low", "high", "p", "p_holm")}
-        bounds = dict.fromkeys(known) if measure.binary else known
+        statistics = {name: getattr(effect, name) for name in ("low", "high", "p", "p_holm")}
+        bounds = dict.fromkeys(statistics) if measure.binary else statistics
         values = {"estimate": effect.estimate} | bounds
         values |= {"seed_low": effect.seed_low, "seed_high": effect.seed_high}
         for name in ("estimate", "low", "high", "seed_low", "seed_high"):
@@ -141,26 +141,29 @@ def _missing_effects(fits: Mapping[str, FactorialFit]) -> str:
     """A note on effects that could not be estimated, or only without interactions, for measures with equal gaps."""
     gaps: dict[str, list[str]] = {}
     for name, fit in fits.items():
-        narrow = [effect_name(effect.factors) for effect in fit.effects if effect.order < len(FACTORS)]
+        reduced_effects = [effect_name(effect.factors) for effect in fit.effects if effect.order < len(FACTORS)]
         parts = [f"left out: {', '.join(map(effect_name, fit.left_out))}"] if fit.left_out else []
-        parts += [f"estimated from some cells only: {', '.join(narrow)}"] if narrow else []
+        parts += [f"estimated from some cells only: {', '.join(reduced_effects)}"] if reduced_effects else []
         if parts:
             gaps.setdefault(" and ".join(parts), []).append(name)
-    told = [
+    notes = [
         f"Since cells are missing, {gap} (of {'all measures' if len(names) == len(fits) else ', '.join(names)})."
         for gap, names in gaps.items()
     ]
-    return " ".join(told)
+    return " ".join(notes)
 
 
 def _cell_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     results = []
     for label in CELLS:
-        mine = [row for row in rows if row["condition"] == label]
-        if mine:
-            means = {r.name: shown_interval([row[r.name] for row in mine], r).mean for r in RESPONSES if not r.binary}
+        cell_rows = [row for row in rows if row["condition"] == label]
+        if cell_rows:
+            means = {
+                r.name: shown_interval([row[r.name] for row in cell_rows], r).mean for r in RESPONSES if not r.binary
+            }
             results.append(
-                {"condition": label, "worlds": len(mine), "died_out": sum(row["died_out"] for row in mine)} | means
+                {"condition": label, "worlds": len(cell_rows), "died_out": sum(row["died_out"] for row in cell_rows)}
+                | means
             )
     return results
 

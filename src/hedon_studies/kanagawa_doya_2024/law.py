@@ -25,29 +25,31 @@ _LINES = (
 
 def window_births(config: Config) -> int:
     """The births attempted in a window of learning by an arena full of agents without energy."""
-    own = config.species[ONLY]
-    chance = float(birth_rate(own.birth, 0.0))
-    return max(round(own.population.capacity * chance * config.world.rollout_steps), 1)
+    species = config.species[ONLY]
+    chance = float(birth_rate(species.birth, 0.0))
+    return max(round(species.population.capacity * chance * config.world.rollout_steps), 1)
 
 
 def _hazard(inputs: ItemInputs) -> Iterator[NamedFigure]:
-    own = BASELINE.config(inputs.fidelity).species[ONLY]
-    poor, rich = (float(expected_lifetime(own.hazard, energy)) for energy in (0.0, own.energy.capacity))
+    species = BASELINE.config(inputs.fidelity).species[ONLY]
+    poor, rich = (float(expected_lifetime(species.hazard, energy)) for energy in (0.0, species.energy.capacity))
     caption = (
         f"At constant energy a life lasts {poor:,.0f} steps on average without any, and {rich:,.0f} with as much as an "
         "agent can hold."
     )
-    yield NamedFigure("hazard", "How do energy and age decide who dies?", hedon.figure.draw_hazard(own.hazard), caption)
+    yield NamedFigure(
+        "hazard", "How do energy and age decide who dies?", hedon.figure.draw_hazard(species.hazard), caption
+    )
 
 
 def _birth(inputs: ItemInputs) -> Iterator[NamedFigure]:
-    own = BASELINE.config(inputs.fidelity).species[ONLY]
-    children = float(reproduction_number(own.hazard, own.birth, 0.0))
+    species = BASELINE.config(inputs.fidelity).species[ONLY]
+    children = float(reproduction_number(species.hazard, species.birth, 0.0))
     caption = (
         f"Even an agent that stays at zero energy tries {children:.2f} children in its life; a lineage keeps its size "
         "at 1, if all of them find a place."
     )
-    yield NamedFigure("birth", "How does energy decide who has children?", hedon.figure.draw_birth(own), caption)
+    yield NamedFigure("birth", "How does energy decide who has children?", hedon.figure.draw_birth(species), caption)
 
 
 def _walk(inputs: ItemInputs) -> Iterator[NamedFigure]:

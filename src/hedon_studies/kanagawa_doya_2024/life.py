@@ -45,9 +45,11 @@ def _make(name: str, title: str, conditions: Sequence[Condition], inputs: ItemIn
 
 
 def _world_rows(worlds: Mapping[str, Sequence[WorldRecord]]) -> Iterator[dict[str, Any]]:
-    named = {label: [replace(world, condition=label) for world in group] for label, group in worlds.items()}
-    lives = next(result for result in lifetime(named) if result.name == "lifetime_world").rows.iter_rows(named=True)
-    for life, world in zip(lives, (world for group in named.values() for world in group), strict=True):
+    labelled = {label: [replace(world, condition=label) for world in group] for label, group in worlds.items()}
+    life_rows = next(result for result in lifetime(labelled) if result.name == "lifetime_world").rows.iter_rows(
+        named=True
+    )
+    for life, world in zip(life_rows, (world for group in labelled.values() for world in group), strict=True):
         condition, agents = life.pop("condition"), life["agents"]
         yield {
             "condition": condition,
@@ -62,18 +64,18 @@ def _world_rows(worlds: Mapping[str, Sequence[WorldRecord]]) -> Iterator[dict[st
 
 
 def _rows(condition: Condition, worlds: Sequence[WorldRecord], by_world: pl.DataFrame) -> Iterator[dict[str, Any]]:
-    mine, paper = by_world.filter(pl.col("condition") == condition.label), paper_figures(condition.preset)
-    for column, (quantity, reported) in _QUANTITIES.items():
-        interval = mean_interval(mine[column], within=SHARE if column == "censored" else AMOUNT)
-        figure = getattr(paper, reported) if reported else None
+    condition_rows, paper = by_world.filter(pl.col("condition") == condition.label), paper_figures(condition.preset)
+    for column, (quantity, attribute) in _QUANTITIES.items():
+        interval = mean_interval(condition_rows[column], within=SHARE if column == "censored" else AMOUNT)
+        paper_value = getattr(paper, attribute) if attribute else None
         yield {
             "condition": condition.label,
             "quantity": quantity,
             "mean": interval.mean,
             "low": interval.low,
             "high": interval.high,
-            "paper": figure,
-            "ratio": interval.mean / figure if figure and interval.mean is not None else None,
+            "paper": paper_value,
+            "ratio": interval.mean / paper_value if paper_value and interval.mean is not None else None,
             "worlds": interval.worlds,
             "of": len(worlds),
             "extinct": count_extinct(worlds),

@@ -42,10 +42,10 @@ def condition_drifts(inputs: ItemInputs, conditions: Sequence[Condition]) -> Dri
     """The drift of all genes in all worlds of some conditions."""
     return {
         condition.label: [
-            (world.seed, found)
+            (world.seed, drift)
             for world in inputs.worlds.get(condition.label, ())
             for weight in GENES
-            if weight in world.weight_names and (found := gene_drift(world, weight, generator(world))) is not None
+            if weight in world.weight_names and (drift := gene_drift(world, weight, generator(world))) is not None
         ]
         for condition in conditions
     }
@@ -59,22 +59,26 @@ def drift_parts(name: str, drifts: Drifts, note: str) -> Iterator[NamedFigure | 
         drifts: Drift of genes, by condition.
         note: Remark below the tables.
     """
-    shown = {label: [drift for _, drift in found] for label, found in drifts.items()}
+    drifts_by_label = {label: [drift for _, drift in seed_drifts] for label, seed_drifts in drifts.items()}
     question = "Do weights go where mutations push them?"
-    yield NamedFigure(f"{name}_prediction", question, figure.draw_predictions(shown, GENES), _DRAWN)
+    yield NamedFigure(f"{name}_prediction", question, figure.draw_predictions(drifts_by_label, GENES), _DRAWN)
     yield make_table(
         f"{name}_prediction",
         "Mutations: predicted and seen",
         [
             row
-            for label, found in drifts.items()
-            for row in _prediction_rows(label, shown[label], len({seed for seed, _ in found}))
+            for label, seed_drifts in drifts.items()
+            for row in _prediction_rows(label, drifts_by_label[label], len({seed for seed, _ in seed_drifts}))
         ],
         sentences(_PREDICTION, note),
     )
-    rows = [{"condition": label, "seed": seed} | drift for label, found in drifts.items() for seed, drift in found]
-    brief = [{column: row[column] for column in ("condition", "seed", *_BRIEF)} for row in rows]
-    yield make_table(f"{name}_gene", "Mutations, world by world", brief, _GENE)
+    rows = [
+        {"condition": label, "seed": seed} | drift
+        for label, seed_drifts in drifts.items()
+        for seed, drift in seed_drifts
+    ]
+    brief_rows = [{column: row[column] for column in ("condition", "seed", *_BRIEF)} for row in rows]
+    yield make_table(f"{name}_gene", "Mutations, world by world", brief_rows, _GENE)
     yield make_table(f"{name}_gene_all", "Mutations, world by world, in full", rows, _GENE, shown=False)
 
 
@@ -82,8 +86,8 @@ def _prediction_rows(label: str, drifts: Sequence[Drift], worlds: int) -> Iterat
     """Rows with bounds and p values from five worlds up, not three pairs, since a world's genes share a pedigree."""
     for comparison in COMPARISONS:
         for weight in (*GENES, _ALL):
-            mine = [drift for drift in drifts if weight in (drift["weight"], _ALL)]
-            if mine:
-                found = {"condition": label, "compared": comparison, "weight": weight, "worlds": worlds}
-                found |= compare(mine, comparison)
-                yield found if worlds >= FOR_INTERVAL else found | dict.fromkeys(("low", "high", "p_sign"))
+            weight_drifts = [drift for drift in drifts if weight in (drift["weight"], _ALL)]
+            if weight_drifts:
+                row = {"condition": label, "compared": comparison, "weight": weight, "worlds": worlds}
+                row |= compare(weight_drifts, comparison)
+                yield row if worlds >= FOR_INTERVAL else row | dict.fromkeys(("low", "high", "p_sign"))

@@ -20,18 +20,20 @@ def make_noise(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """The figure and tables of the study."""
     drifts = condition_drifts(inputs, CONDITIONS)
     tables = [
-        f"{label}: births of equal number {_agreement([drift['is_table'] for _, drift in found])}"
-        for label, found in drifts.items()
-        if found
+        f"{label}: births of equal number {_agreement([drift['is_table'] for _, drift in seed_drifts])}"
+        for label, seed_drifts in drifts.items()
+        if seed_drifts
     ]
     notes = [f"{'; '.join(tables)}." if tables else "", missing_note(inputs, CONDITIONS, SCALE)]
     yield from drift_parts("noise", drifts, " ".join(filter(None, notes)))
 
 
-def _agreement(agree: list[bool]) -> str:
-    if all(agree):
+def _agreement(agreements: list[bool]) -> str:
+    if all(agreements):
         return "agree to rounding"
-    return "do not agree" if not any(agree) else f"agree in {sum(agree)} of {len(agree)} genes and worlds"
+    return (
+        "do not agree" if not any(agreements) else f"agree in {sum(agreements)} of {len(agreements)} genes and worlds"
+    )
 
 
 NOISE = Item(

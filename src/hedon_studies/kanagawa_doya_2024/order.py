@@ -35,8 +35,8 @@ def _orders() -> Iterator[Order]:
         ("centered", "baseline", MUCH),
         ("centered", "large", MUCH),
     ):
-        times = "longer" if factor == 1.0 else f"at least {factor:g} times as long"
-        text = f"agents live {times} in the condition {first} than in {second}"
+        comparison = "longer" if factor == 1.0 else f"at least {factor:g} times as long"
+        text = f"agents live {comparison} in the condition {first} than in {second}"
         ratio = (PAPER[first].mean_lifetime or math.nan) / (PAPER[second].mean_lifetime or math.nan)
         lifetime, reported = MEASURES["mean_lifetime"].of, f"{ratio:.3g} times"
         yield _order("longer lifetime", first, second, text, lifetime, "ratio", reported, low=factor)

@@ -73,9 +73,9 @@ def paper_figures(preset: str | None) -> PaperFigures | None:
 
 def reported() -> dict[str, dict[str, Any]]:
     """The paper's results for each preset, for `Study.reported`."""
-    known = {preset: {"steps": STEPS} | {k: v for k, v in asdict(f).items() if v} for preset, f in PAPER.items()}
-    for figures in known.values():
-        if "population" in figures:
-            figures["alive_mean"] = figures.pop("population")
-    known["baseline"]["ends"] = ENDS
-    return known
+    results = {preset: {"steps": STEPS} | {k: v for k, v in asdict(f).items() if v} for preset, f in PAPER.items()}
+    for values in results.values():
+        if "population" in values:
+            values["alive_mean"] = values.pop("population")
+    results["baseline"]["ends"] = ENDS
+    return results

@@ -29,11 +29,16 @@ Row = dict[str, Any]
 def _parameters(inputs: ItemInputs) -> Iterator[ResultTable]:
     fidelity = inputs.fidelity
     rows = list(_settings(fidelity))
-    explained = f"{_ORIGIN} "
+    origin_note = f"{_ORIGIN} "
     for name, (title, sections) in CONCERNS.items():
-        mine = [row for row in rows if row["setting"].split(".")[0] in sections]
-        yield make_table(name, f"{title} (baseline, {fidelity})", _without_empty(mine), explained + _differences(mine))
-        explained = ""
+        section_rows = [row for row in rows if row["setting"].split(".")[0] in sections]
+        yield make_table(
+            name,
+            f"{title} (baseline, {fidelity})",
+            _without_empty(section_rows),
+            origin_note + _differences(section_rows),
+        )
+        origin_note = ""
     presets = " ".join(f"{preset}: {describe_preset(preset)}" for preset in PAPER_PRESETS)
     note = f"A kind of food that is added is compared with the first kind of the baseline. {presets}"
     yield make_table(
@@ -45,15 +50,15 @@ def _settings(fidelity: str) -> Iterator[Row]:
     """A row per setting of the baseline, with the values of each fidelity if they differ."""
     values = {other: flatten(BASELINE.config(other)) for other in FIDELITIES}
     for path, setting, value in file_leaves(BASELINE.config(fidelity)):
-        each = {_column(other): format_value(values[other][path]) for other in FIDELITIES}
-        differ = len(set(each.values())) > 1
+        by_fidelity = {_column(other): format_value(values[other][path]) for other in FIDELITIES}
+        differs = len(set(by_fidelity.values())) > 1
         yield {
             "setting": path,
             "meaning": setting.doc.meaning,
             "value": format_value(value),
             "unit": setting.doc.unit,
             "origin": setting.doc.source,
-        } | (each if differ else dict.fromkeys(each))
+        } | (by_fidelity if differs else dict.fromkeys(by_fidelity))
 
 
 def _conditions(fidelity: str) -> Iterator[Row]:
@@ -62,17 +67,18 @@ def _conditions(fidelity: str) -> Iterator[Row]:
     base, first = flatten(baseline), next(iter(baseline.food))
     for preset in PAPER_PRESETS:
         config = Condition(preset, preset).config(fidelity)
-        like = {f"food.{kind}": f"food.{first}" for kind in config.food if kind not in baseline.food}
+        matching_kinds = {f"food.{kind}": f"food.{first}" for kind in config.food if kind not in baseline.food}
         for path, setting, value in file_leaves(config):
             kind = ".".join(path.split(".")[:2])
-            before = base.get(path.replace(kind, like.get(kind, kind), 1), value)  # names are not settings
-            if before == value:
+            # names are not settings
+            base_value = base.get(path.replace(kind, matching_kinds.get(kind, kind), 1), value)
+            if base_value == value:
                 continue
             yield {
                 "preset": preset,
                 "setting": path,
                 "meaning": setting.doc.meaning,
-                "baseline": format_value(before),
+                "baseline": format_value(base_value),
                 "value": format_value(value),
                 "unit": setting.doc.unit,
             }
@@ -80,8 +86,8 @@ def _conditions(fidelity: str) -> Iterator[Row]:
 
 def _without_empty(rows: Sequence[Row]) -> list[Row]:
     """The rows without the columns that are missing in all of them."""
-    kept = [name for name in rows[0] if any(row[name] is not None for row in rows)]
-    return [{name: row[name] for name in kept} for row in rows]
+    columns = [name for name in rows[0] if any(row[name] is not None for row in rows)]
+    return [{name: row[name] for name in columns} for row in rows]
 
 
 def _differences(rows: Sequence[Row]) -> str:

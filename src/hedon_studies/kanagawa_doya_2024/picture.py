@@ -30,8 +30,8 @@ def _arena(inputs: ItemInputs) -> Iterator[NamedFigure]:
     colors = hedon.figure.meal_colors(BASELINE.config(inputs.fidelity))
     agent = hedon.figure.telling_agent(snapshot)
     rays_of = () if agent is None else (agent,)
-    drawn = hedon.figure.draw_world(snapshot, colors, rays_of)
-    yield NamedFigure("arena", "What does a world look like?", drawn, f"World of {_when(snapshot)}.")
+    arena_figure = hedon.figure.draw_world(snapshot, colors, rays_of)
+    yield NamedFigure("arena", "What does a world look like?", arena_figure, f"World of {_when(snapshot)}.")
 
 
 def _arenas(inputs: ItemInputs) -> Iterator[NamedFigure]:
@@ -43,9 +43,11 @@ def _arenas(inputs: ItemInputs) -> Iterator[NamedFigure]:
         for conditions in (SIZES, _FOODS)
     ]
     caption = "Above each, of every kind of food, its energy and how much there can be."
-    shown = [f"{panel.label} {_when(panel.snapshot)}" for row in rows for panel in row if panel.snapshot is not None]
-    if shown:
-        caption += f" Shown: {'; '.join(shown)}."
+    shown_panels = [
+        f"{panel.label} {_when(panel.snapshot)}" for row in rows for panel in row if panel.snapshot is not None
+    ]
+    if shown_panels:
+        caption += f" Shown: {'; '.join(shown_panels)}."
     missing = [panel.label for row in rows for panel in row if panel.snapshot is None]
     if missing:
         caption += f" Drawn from the settings alone, since there was no run: {', '.join(missing)}."

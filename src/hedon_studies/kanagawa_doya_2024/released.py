@@ -47,7 +47,9 @@ def make_released(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     worlds = list(inputs.worlds.get(LABEL, ()))
     missing = missing_note(inputs, CONDITIONS, SCALE)
     fates = [fate(world) for world in worlds]
-    rows = [row | vars(found) for row, found in zip(world_rows(inputs, CONDITIONS, RESPONSES), fates, strict=True)]
+    rows = [
+        row | vars(world_fate) for row, world_fate in zip(world_rows(inputs, CONDITIONS, RESPONSES), fates, strict=True)
+    ]
     drifts = condition_drifts(inputs, CONDITIONS)
     if worlds:
         yield NamedFigure(
@@ -67,24 +69,27 @@ def make_released(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
 def _weight_figures(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Iterator[NamedFigure]:
     """The paper's figure of weights, for all worlds and for the surviving ones; seeds keep their colors."""
     questions = {"released_weights": "Which rewards evolved, in all worlds?"}
-    standing = [i for i, found in enumerate(fates) if not found.is_lost]
-    shown = {"released_weights": list(range(len(worlds)))}
-    if 0 < len(standing) < len(worlds):
+    survivors = [i for i, world_fate in enumerate(fates) if not world_fate.is_lost]
+    groups = {"released_weights": list(range(len(worlds)))}
+    if 0 < len(survivors) < len(worlds):
         questions["released_weights_standing"] = "And in those that do not head for extinction?"
-        shown["released_weights_standing"] = standing
+        groups["released_weights_standing"] = survivors
     for name, question in questions.items():
-        last = {i: last_agents(worlds[i].agents).with_columns(world=pl.lit(i, pl.Int32)) for i in shown[name]}
-        drift = drift_genes([worlds[i] for i in last], list(last.values()))
+        last_by_world = {i: last_agents(worlds[i].agents).with_columns(world=pl.lit(i, pl.Int32)) for i in groups[name]}
+        drift = drift_genes([worlds[i] for i in last_by_world], list(last_by_world.values()))
         yield NamedFigure(
-            name, question, hedon.figure.draw_weights(pl.concat(last.values()), worlds[0].reward_names, drift), _WEIGHTS
+            name,
+            question,
+            hedon.figure.draw_weights(pl.concat(last_by_world.values()), worlds[0].reward_names, drift),
+            _WEIGHTS,
         )
 
 
 def _fate_rows(fates: Sequence[Fate]) -> Iterator[dict[str, Any]]:
     paper = {EXTINCT: f"{EXTINCTION[_PAPER_COSTS]:.0%} of 10 seeds"}
-    counts = {name: sum(found.fate == name for found in fates) for name in FATES}
-    counts = {"extinct or heading for it": sum(found.is_lost for found in fates)} | counts
-    counts["standing after such a low"] = sum(found.recovered for found in fates)
+    counts = {name: sum(world_fate.fate == name for world_fate in fates) for name in FATES}
+    counts = {"extinct or heading for it": sum(world_fate.is_lost for world_fate in fates)} | counts
+    counts["standing after such a low"] = sum(world_fate.recovered for world_fate in fates)
     for name, count in counts.items() if fates else ():
         low, high = share_interval(count, len(fates))
         shares = {"count": count, "worlds": len(fates), "share": count / len(fates), "low": low, "high": high}
@@ -94,24 +99,24 @@ def _fate_rows(fates: Sequence[Fate]) -> Iterator[dict[str, Any]]:
 def _survivor_rows(rows: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
     measures = {measure.name: measure for measure in RESPONSES}
     for name in _COMPARED if rows else ():
-        for group, belonging in _GROUPS.items():
-            values = [row[name] for row in rows if row["fate"] in belonging]
-            found = vars(shown_interval(values, measures[name]))
+        for group, group_fates in _GROUPS.items():
+            values = [row[name] for row in rows if row["fate"] in group_fates]
+            statistics = vars(shown_interval(values, measures[name]))
             if name.startswith("w_"):
-                found |= {"positive": sum(value > 0 for value in values if value is not None)}
-            yield {"measure": name, "worlds_of": group} | found | {"paper": _paper(name)}
+                statistics |= {"positive": sum(value > 0 for value in values if value is not None)}
+            yield {"measure": name, "worlds_of": group} | statistics | {"paper": _paper(name)}
 
 
 def _paper(name: str) -> str:
     """The value that the paper reports for a measure in the baseline."""
-    said = PAPER["baseline"]
+    paper = PAPER["baseline"]
     texts = {
         "w_normal_last": "mostly above 4",
         "w_action_last": "largely positive or slightly negative",
-        "mean_lifetime": f"{said.mean_lifetime:,.0f}",
-        "food_per_step": f"{said.food_per_step:g}",
-        "alive_mean": "{} to {}".format(*said.population or ()),
-        "generation": "{} to {}, in ten times the steps".format(*said.generation or ()),
+        "mean_lifetime": f"{paper.mean_lifetime:,.0f}",
+        "food_per_step": f"{paper.food_per_step:g}",
+        "alive_mean": "{} to {}".format(*paper.population or ()),
+        "generation": "{} to {}, in ten times the steps".format(*paper.generation or ()),
     }
     return texts[name]
 

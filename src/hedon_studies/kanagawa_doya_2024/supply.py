@@ -52,23 +52,23 @@ def make_supply(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     rows = world_rows(inputs, CONDITIONS, _ASKED)
     if rows:
         question = "Could agents eat what the paper reports of the food that grows?"
-        drawn = figure.draw_supply(_eaters(rows), RULES, _rates(), _supplies(inputs))
-        yield NamedFigure("supply", question, drawn, _DRAWN)
-    found = [
-        _condition_row(condition, inputs, mine)
+        supply_figure = figure.draw_supply(_eaters(rows), RULES, _rates(), _supplies(inputs))
+        yield NamedFigure("supply", question, supply_figure, _DRAWN)
+    condition_rows = [
+        _condition_row(condition, inputs, group_rows)
         for condition in CONDITIONS
-        if (mine := [r for r in rows if r["condition"] == condition.label])
+        if (group_rows := [r for r in rows if r["condition"] == condition.label])
     ]
-    yield make_table("supply", "Food that grows, and food that is eaten", found, sentences(_NOTE, missing))
+    yield make_table("supply", "Food that grows, and food that is eaten", condition_rows, sentences(_NOTE, missing))
     yield make_table("supply_worlds", "The worlds of the study of supply", rows, missing, shown=False)
 
 
 def _condition_row(condition: Condition, inputs: ItemInputs, rows: list[dict[str, Any]]) -> dict[str, Any]:
-    grows, paper = growth(condition.config(inputs.fidelity)), PAPER[condition.preset]
-    means = {asked.name: shown_interval([row[asked.name] for row in rows], asked).mean for asked in _ASKED}
-    feeds = grows / paper.food_per_step if paper.food_per_step else None
-    known = {"paper_food": paper.food_per_step, "feeds": feeds, "paper_lifetime": paper.mean_lifetime}
-    return {"condition": condition.label, "worlds": len(rows), "grows": grows} | means | known
+    food_growth, paper = growth(condition.config(inputs.fidelity)), PAPER[condition.preset]
+    means = {measure.name: shown_interval([row[measure.name] for row in rows], measure).mean for measure in _ASKED}
+    fed_agents = food_growth / paper.food_per_step if paper.food_per_step else None
+    reference = {"paper_food": paper.food_per_step, "feeds": fed_agents, "paper_lifetime": paper.mean_lifetime}
+    return {"condition": condition.label, "worlds": len(rows), "grows": food_growth} | means | reference
 
 
 def growth(config: Config) -> float:

@@ -43,10 +43,10 @@ def draw_courses(
         )
         for label, group in worlds.items()
     ]
-    first = next(iter(worlds.values()))[0]
-    colors = hedon.figure.meal_colors(first.config, first.prey)
-    drawn = hedon.figure.draw_histories(rows, first.reward_names, first.neutral_names, colors)
-    yield NamedFigure(name, question, drawn, caption)
+    first_world = next(iter(worlds.values()))[0]
+    colors = hedon.figure.meal_colors(first_world.config, first_world.prey)
+    figure = hedon.figure.draw_histories(rows, first_world.reward_names, first_world.neutral_names, colors)
+    yield NamedFigure(name, question, figure, caption)
 
 
 def _item(name: str, title: str, paper: str, question: str, *conditions: Condition) -> Item:

@@ -44,13 +44,13 @@ def measure(world: WorldRecord) -> dict[str, Any]:
 
 def named_tests(rows: Sequence[dict[str, Any]]) -> tuple[Test, Test]:
     """The tests of both claims, from the rows of all worlds."""
-    known = [row for row in rows if row["rate"] is not None and row["lifetime"]]
-    still = [row for row in known if row["world"] == CONSTANT]
+    measured = [row for row in rows if row["rate"] is not None and row["lifetime"]]
+    constant = [row for row in measured if row["world"] == CONSTANT]
     slope = slope_test(
         "shorter lives, larger rates: slope of log10 rate over log10 lifetime",
-        [np.log10(row["lifetime"]) for row in still],
-        [row["rate"] for row in still],
-        sum(row["died out"] for row in still),
+        [np.log10(row["lifetime"]) for row in constant],
+        [row["rate"] for row in constant],
+        sum(row["died out"] for row in constant),
         above=False,
     )
     rates = {(row["world"], row["hazard"], row["seed"]): row for row in rows if row["rate"] is not None}
@@ -93,8 +93,8 @@ def _figure(question: str, rows: Sequence[dict[str, Any]], slope: Test) -> Named
         figure = hedon.figure.new_figure(5.6, 3.6)
         axes = figure.subplots()
         for world, color in ((CONSTANT, hedon.figure.BLUE), (CHANGING, hedon.figure.ORANGE)):
-            mine = [row for row in rows if row["world"] == world and row["lifetime"] and row["rate"] is not None]
-            for row in mine:
+            world_rows = [row for row in rows if row["world"] == world and row["lifetime"] and row["rate"] is not None]
+            for row in world_rows:
                 marker = "x" if row["died out"] else "o"
                 axes.plot(row["lifetime"], row["rate"], marker, color=color, markersize=4)
             axes.plot([], [], "o", color=color, label=world)

@@ -46,19 +46,19 @@ def lines_of(world: WorldRecord) -> Lines:
 
 def invasion_tests(lines: Mapping[float, Sequence[Lines]]) -> tuple[Test, Test]:
     """Tests whether each type increases when it starts rare, from the worlds of each share of foragers."""
-    found = []
+    tests = []
     for name, share, above in (("foragers", RARE, True), ("trackers", COMMON, False)):
         worlds = lines.get(share, ())
-        found.append(
+        tests.append(
             mean_test(
                 f"{name} invade from {RARE:.0%}: change of the share of foragers",
-                [each.share[-1] - each.share[0] for each in worlds],
+                [group_lines.share[-1] - group_lines.share[0] for group_lines in worlds],
                 len(worlds),
-                sum(each.ended for each in worlds),
+                sum(group_lines.ended for group_lines in worlds),
                 above=above,
             )
         )
-    return found[0], found[1]
+    return tests[0], tests[1]
 
 
 def make_mixed(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
@@ -73,12 +73,12 @@ def make_mixed(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         note = missing(MIXTURES.values(), inputs)
         yield NamedFigure("mating-strategies", question, hedon.figure.draw_message("no worlds yet"), note)
         return
-    found = estimate_frequency(("foragers", "trackers"), lines)
+    frequency = estimate_frequency(("foragers", "trackers"), lines)
     caption = "Dots: worlds that began with one share of foragers. Line: all of them together, with its interval."
-    yield NamedFigure("mating-strategies", question, hedon.assay.draw_frequency(found), caption)
+    yield NamedFigure("mating-strategies", question, hedon.assay.draw_frequency(frequency), caption)
     note = missing_note(inputs, tuple(MIXTURES.values()), Scale(SEEDS, MIXED["steps"]))
     yield verdict_table("mating_verdict", invasion_tests(lines), note, NAMED)
-    yield from hedon.assay.frequency_tables(found)
+    yield from hedon.assay.frequency_tables(frequency)
 
 
 def is_clustered(world: WorldRecord) -> bool | None:
@@ -98,11 +98,16 @@ def is_clustered(world: WorldRecord) -> bool | None:
 
 def cluster_test(rows: Sequence[dict[str, Any]]) -> Test:
     """Tests whether more worlds have clusters than if the gene were neutral, like those that it is compared with."""
-    known = [row for row in rows if row["clusters"] is not None]
+    measured = [row for row in rows if row["clusters"] is not None]
     chance = 1 / (1 + rows[0]["neutral genes"]) if rows else 1.0
-    count, gone = (sum(row[name] for row in known) for name in ("clusters", "died out"))
+    count, extinct_count = (sum(row[name] for row in measured) for name in ("clusters", "died out"))
     return count_test(
-        f"genomes form clusters: share of worlds less {chance:.2g}", count, len(known), gone, chance, above=True
+        f"genomes form clusters: share of worlds less {chance:.2g}",
+        count,
+        len(measured),
+        extinct_count,
+        chance,
+        above=True,
     )
 
 

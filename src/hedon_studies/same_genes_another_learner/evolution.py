@@ -54,7 +54,14 @@ def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
         "alive_all_steps": mean_alive(world.population),
         **{name: MEASURES[name].of(world) for name in ("mean_lifetime", "food_per_step")},
         "generation": drift[0].generation if drift else None,
-        **{key: value for one in drift for key, value in ((one.weight, one.mean), (f"{one.weight}_score", one.score))},
+        **{
+            key: value
+            for entry in drift
+            for key, value in (
+                (entry.weight, entry.mean),
+                (f"{entry.weight}_score", entry.score),
+            )
+        },
         "backend": manifest.sessions[-1].backend,
         "hedon_version": manifest.hedon_version,
         "git_revision": manifest.git_revision,
@@ -96,9 +103,11 @@ def pairs(worlds: pl.DataFrame) -> pl.DataFrame:
     Returns:
         One row per pair: "seed", and each weight with the suffixes `_slow` and `_fast`.
     """
-    lived = worlds.filter(pl.col("extinct_step").is_null())
+    survivors = worlds.filter(pl.col("extinct_step").is_null())
     weights = [name for name in worlds.columns if f"{name}_score" in worlds.columns]
-    arms = [lived.filter(pl.col("arm") == arm).select("seed", pl.col(weights).name.suffix(f"_{arm}")) for arm in ARMS]
+    arms = [
+        survivors.filter(pl.col("arm") == arm).select("seed", pl.col(weights).name.suffix(f"_{arm}")) for arm in ARMS
+    ]
     return arms[0].join(arms[1], on="seed").sort("seed")
 
 
@@ -130,11 +139,12 @@ def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
     for gene in (SIGHT, FOOD):
         difference = paired[f"{gene}_fast"] - paired[f"{gene}_slow"]
         rows.append(named_test(f"{gene}, fast less slow", difference.to_numpy()))
-    lived = worlds.filter(pl.col("extinct_step").is_null())
+    survivors = worlds.filter(pl.col("extinct_step").is_null())
     for arm in ARMS:
-        own = lived.filter(pl.col("arm") == arm)
+        arm_rows = survivors.filter(pl.col("arm") == arm)
         rows += [
-            named_test(f"{gene}, {arm}, against drift [sd]", own[f"{gene}_score"].to_numpy()) for gene in (SIGHT, FOOD)
+            named_test(f"{gene}, {arm}, against drift [sd]", arm_rows[f"{gene}_score"].to_numpy())
+            for gene in (SIGHT, FOOD)
         ]
     corrected = [None, *holm([row["p_sign_flip"] for row in rows[1:]])]
     return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
@@ -161,19 +171,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
     reduce.add_argument("run", nargs="+", type=Path)
     reduce.add_argument("--out", type=Path, required=True)
     verbs.add_parser("tests", help="print the tests").add_argument("folder", type=Path)
-    given = parser.parse_args(arguments)
-    if given.verb == "worlds":
-        reduce_runs(given.run, given.out)
+    options = parser.parse_args(arguments)
+    if options.verb == "worlds":
+        reduce_runs(options.run, options.out)
         return
-    worlds = pl.read_csv(given.folder / WORLDS)
+    worlds = pl.read_csv(options.folder / WORLDS)
     means = ["alive_all_steps", "mean_lifetime", "food_per_step", "generation", SIGHT, FOOD, ACTION]
     with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=48, tbl_width_chars=160):
         extinct = pl.col("extinct_step").is_not_null().sum().alias("extinct")
         print(worlds.group_by("arm", maintain_order=True).agg(pl.len(), extinct, pl.col(means).mean()))
         print(named_tests(worlds))
     control = neutral_control(worlds)
-    outside = control.filter((pl.col("low") > 0) | (pl.col("high") < 0))["test"].to_list()
-    print(f"{len(outside)} of {control.height} neutral genes have an interval without 0: {', '.join(outside)}")
+    nonzero = control.filter((pl.col("low") > 0) | (pl.col("high") < 0))["test"].to_list()
+    print(f"{len(nonzero)} of {control.height} neutral genes have an interval without 0: {', '.join(nonzero)}")
 
 
 if __name__ == "__main__":

@@ -52,16 +52,18 @@ def write_arms(arms: Mapping[str, pl.DataFrame], folder: Path) -> None:
     for name, arm in arms.items():
         if not arm.select(genes).equals(first.select(genes)):
             raise ValueError(f"{name}: its founders have other genes than those of {next(iter(arms))}")
-    became = [arm.select(pl.lit(name).alias("arm"), pl.col(outcomes).cast(pl.Float32)) for name, arm in arms.items()]
-    for file, table in ((FOUNDERS, shared), (OUTCOMES, pl.concat(became))):
+    outcome_rows = [
+        arm.select(pl.lit(name).alias("arm"), pl.col(outcomes).cast(pl.Float32)) for name, arm in arms.items()
+    ]
+    for file, table in ((FOUNDERS, shared), (OUTCOMES, pl.concat(outcome_rows))):
         table.write_parquet(folder / file, compression="zstd", compression_level=19)
 
 
 def read_arms(folder: Path) -> dict[str, pl.DataFrame]:
     """The founders of each arm with their genes and outcomes."""
     founders = pl.read_parquet(folder / FOUNDERS)
-    became = pl.read_parquet(folder / OUTCOMES).partition_by("arm", as_dict=True, include_key=False)
-    return {str(name): pl.concat([founders, rows], how="horizontal") for (name,), rows in became.items()}
+    outcome_rows = pl.read_parquet(folder / OUTCOMES).partition_by("arm", as_dict=True, include_key=False)
+    return {str(name): pl.concat([founders, rows], how="horizontal") for (name,), rows in outcome_rows.items()}
 
 
 def slopes(founders: pl.DataFrame, outcome: str, genes: tuple[str, ...] = (SIGHT, FOOD, ACTION)) -> pl.DataFrame:
@@ -81,10 +83,10 @@ def slopes(founders: pl.DataFrame, outcome: str, genes: tuple[str, ...] = (SIGHT
         fitness = world[outcome].to_numpy().astype(np.float64)
         design = np.column_stack([np.ones(len(fitness)), *(world[gene].to_numpy() for gene in genes)])
         if fitness.mean() > 0:
-            fit = np.linalg.lstsq(design, fitness / fitness.mean(), rcond=None)[0][1:].tolist()
+            coefficients = np.linalg.lstsq(design, fitness / fitness.mean(), rcond=None)[0][1:].tolist()
         else:
-            fit = [None] * len(genes)
-        rows.append({"seed": seed, **dict(zip(genes, fit, strict=True))})
+            coefficients = [None] * len(genes)
+        rows.append({"seed": seed, **dict(zip(genes, coefficients, strict=True))})
     return pl.DataFrame(rows, schema={"seed": pl.Int64, **dict.fromkeys(genes, pl.Float64)})
 
 
@@ -95,10 +97,10 @@ def hump(founders: pl.DataFrame) -> pl.DataFrame:
         One row per world: "seed", and "hump", the mean for weights of sight from 1 to 2 minus the mean from 0 to 1.
     """
     relative = pl.col("descendants") / pl.col("descendants").mean().over("seed")
-    liking = founders.with_columns(relative=relative).filter(pl.col(FOOD) > 0)
+    positive = founders.with_columns(relative=relative).filter(pl.col(FOOD) > 0)
     strong, moderate = ((pl.col(SIGHT) >= low) & (pl.col(SIGHT) < low + 1) for low in (1.0, 0.0))
     means = [pl.col("relative").filter(part).mean() for part in (strong, moderate)]
-    rows = liking.group_by("seed", maintain_order=True).agg(hump=means[0] - means[1])
+    rows = positive.group_by("seed", maintain_order=True).agg(hump=means[0] - means[1])
     return rows.with_columns(pl.col("hump").fill_nan(None))
 
 
@@ -141,8 +143,8 @@ def neutral_control(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     rows: list[dict[str, Any]] = []
     for name, founders in arms.items():
         neutral = [gene for gene in founders.columns if gene.startswith("neutral_")]
-        found = [slopes(founders, "food", (SIGHT, FOOD, ACTION, gene))[gene].drop_nulls() for gene in neutral]
-        tests = [named_test(gene, values.to_numpy()) for gene, values in zip(neutral, found, strict=True)]
+        slope_values = [slopes(founders, "food", (SIGHT, FOOD, ACTION, gene))[gene].drop_nulls() for gene in neutral]
+        tests = [named_test(gene, values.to_numpy()) for gene, values in zip(neutral, slope_values, strict=True)]
         rows.append(
             {"arm": name, "genes": len(neutral), "excluding_0": sum(t["low"] > 0 or t["high"] < 0 for t in tests)}
         )

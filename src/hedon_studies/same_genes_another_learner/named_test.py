@@ -21,14 +21,14 @@ def named_test(name: str, values: NDArray[np.float64]) -> dict[str, Any]:
     Returns:
         "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test) and "p_sign_flip".
     """
-    found = stats.ttest_1samp(values, 0.0)
-    bounds = found.confidence_interval(LEVEL)
+    result = stats.ttest_1samp(values, 0.0)
+    bounds = result.confidence_interval(LEVEL)
     return {
         "test": name,
         "worlds": len(values),
         "effect": float(values.mean()),
         "low": float(bounds.low),
         "high": float(bounds.high),
-        "p": float(np.asarray(found)[1]),
+        "p": float(np.asarray(result)[1]),
         "p_sign_flip": paired_contrast(np.zeros_like(values), values).p,
     }

@@ -53,18 +53,18 @@ def appetite(world: WorldRecord, kind: str = "normal", edges: Sequence[float] = 
     Returns:
         A bin for each pair of neighboring edges, with the dead that lived for at least `WINDOWS` windows of learning.
     """
-    least = WINDOWS * world.config.world.rollout_steps
-    lives = dead_agents(world.agents).filter(pl.col("lifetime") >= least)
-    weight, foods = lives[f"w_{kind}"].to_numpy().astype(np.float64), lives[f"eaten_{kind}"].to_numpy()
-    steps = lives["lifetime"].to_numpy()
+    min_lifetime = WINDOWS * world.config.world.rollout_steps
+    agents = dead_agents(world.agents).filter(pl.col("lifetime") >= min_lifetime)
+    weight, foods = agents[f"w_{kind}"].to_numpy().astype(np.float64), agents[f"eaten_{kind}"].to_numpy()
+    steps = agents["lifetime"].to_numpy()
     at = np.clip(np.searchsorted(edges, weight, side="right") - 1, 0, len(edges) - 2)
     bins = []
     for i, (low, high) in enumerate(pairwise(edges)):
-        mine = at == i
-        if mine.sum() >= FEWEST:
-            lived = int(steps[mine].sum())
-            rate = 1000.0 * float(foods[mine].sum()) / lived
-            bins.append(AppetiteBin(low, high, int(mine.sum()), float(np.median(weight[mine])), lived, rate))
+        in_bin = at == i
+        if in_bin.sum() >= FEWEST:
+            total_steps = int(steps[in_bin].sum())
+            rate = 1000.0 * float(foods[in_bin].sum()) / total_steps
+            bins.append(AppetiteBin(low, high, int(in_bin.sum()), float(np.median(weight[in_bin])), total_steps, rate))
     return bins
 
 
@@ -77,13 +77,13 @@ def half_way_weight(bins: Sequence[AppetiteBin]) -> float | None:
     Returns:
         The weight; None if no bin has negative weights, or the best bin does.
     """
-    averse = [b for b in bins if b.high <= 0]
+    negative_bins = [b for b in bins if b.high <= 0]
     best = max(range(len(bins)), key=lambda i: bins[i].eaten, default=0)
-    if not averse or best < len(averse):
+    if not negative_bins or best < len(negative_bins):
         return None
-    low = sum(b.eaten * b.steps for b in averse) / sum(b.steps for b in averse)
+    low = sum(b.eaten * b.steps for b in negative_bins) / sum(b.steps for b in negative_bins)
     middle = 0.5 * (low + bins[best].eaten)
-    below = max(i for i in range(best) if bins[i].eaten < middle)
-    last, following = bins[below], bins[below + 1]
-    share = (middle - last.eaten) / (following.eaten - last.eaten)
-    return last.weight + share * (following.weight - last.weight)
+    lower_index = max(i for i in range(best) if bins[i].eaten < middle)
+    lower, upper = bins[lower_index], bins[lower_index + 1]
+    share = (middle - lower.eaten) / (upper.eaten - lower.eaten)
+    return lower.weight + share * (upper.weight - lower.weight)

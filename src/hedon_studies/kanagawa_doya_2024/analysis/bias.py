@@ -60,24 +60,24 @@ def gene_drift(world: WorldRecord, weight: str, rng: np.random.Generator) -> Dri
         the end − mean of the founders' distribution) / generations; end, the mean weight of the 5000 agents born last;
         generations, their mean. Missing values are NaN; the result is None if no birth is recorded.
     """
-    found = mutations(world, weight)
-    if not len(found.change):
+    recorded = mutations(world, weight)
+    if not len(recorded.change):
         return None
-    table = noise_table(found)
+    table = noise_table(recorded)
     newest = last_agents(world.agents)
     generations = float(newest["generation"].to_numpy().mean())
     gene = world.gene(weight)
     start, limit = gene.law.initial_mean, gene.mutation.limit
     lines = rng.normal(start, gene.law.initial_sd, _LINES)
-    pool = _pool(found, table)
+    pool = _pool(recorded, table)
     for _ in range(round(generations)):
         lines = np.clip(lines + rng.choice(pool, _LINES), -limit, limit)
     low, high = np.quantile(lines, (0.5 - LEVEL / 2, 0.5 + LEVEL / 2))
-    first, second = _half_biases(world, found, table)
+    first, second = _half_biases(world, recorded, table)
     slope, displacement = _observed(world.population, weight, start)
     return {
         "weight": weight,
-        "births": len(found.change),
+        "births": len(recorded.change),
         "numbers": int(np.count_nonzero(table.births)),
         "bounds": int(table.bound.sum()),
         "disagreement": table.disagreement,
@@ -105,26 +105,26 @@ def compare(drifts: Sequence[Drift], comparison: str) -> dict[str, Any]:
     Returns:
         The result of `prediction`.
     """
-    predicted, seen = COMPARISONS[comparison]
-    return prediction((d[predicted] for d in drifts), (d[seen] for d in drifts))
+    predicted, observed = COMPARISONS[comparison]
+    return prediction((d[predicted] for d in drifts), (d[observed] for d in drifts))
 
 
-def _pool(found: Mutations, table: NoiseTable) -> Floats:
+def _pool(recorded: Mutations, table: NoiseTable) -> Floats:
     """The mutations of all births, taken from the table if there is one, since clipping does not shorten those."""
-    return table.value[found.number] if table.is_one else found.change
+    return table.value[recorded.number] if table.is_one else recorded.change
 
 
-def _half_biases(world: WorldRecord, found: Mutations, table: NoiseTable) -> tuple[float, float]:
+def _half_biases(world: WorldRecord, recorded: Mutations, table: NoiseTable) -> tuple[float, float]:
     """Mean mutation over the births of the first and of the second half of the record."""
-    pool, is_late = _pool(found, table), found.birth_step > 0.5 * world.last_step
+    pool, is_late = _pool(recorded, table), recorded.birth_step > 0.5 * world.last_step
     first, second = (float(pool[half].mean()) if half.any() else NAN for half in (~is_late, is_late))
     return first, second
 
 
 def _observed(population: pl.DataFrame, weight: str, start: float) -> tuple[float, float]:
     """The slope of the mean weight against the mean generation, and the displacement per generation."""
-    known = population.drop_nulls(["generation_mean", f"{weight}_mean"])
-    generation, mean = (known[name].to_numpy().astype(np.float64) for name in ("generation_mean", f"{weight}_mean"))
+    recorded = population.drop_nulls(["generation_mean", f"{weight}_mean"])
+    generation, mean = (recorded[name].to_numpy().astype(np.float64) for name in ("generation_mean", f"{weight}_mean"))
     if len(generation) < 2 or np.ptp(generation) == 0:
         return NAN, NAN
     slope = float(np.polyfit(generation, mean, 1)[0])

@@ -72,8 +72,8 @@ def mutations(world: WorldRecord, weight: str) -> Mutations:
         world: The world.
         weight: Genome column of the gene.
     """
-    whole = np.cumprod(world.agents["agent_id"].to_numpy() == np.arange(world.agents.height)).sum()
-    agents = world.agents.head(int(whole))
+    complete_count = np.cumprod(world.agents["agent_id"].to_numpy() == np.arange(world.agents.height)).sum()
+    agents = world.agents.head(int(complete_count))
     tree = genealogy(agents)
     law = mutation_law(world.config, world.gene(weight))
     child = np.flatnonzero(is_mutated(tree, law, world.last_step))
@@ -91,11 +91,11 @@ def noise_table(found: Mutations) -> NoiseTable:
     births = np.bincount(found.number, minlength=size)
     bound = np.zeros(size, bool)
     for number in np.flatnonzero(births):
-        mine = found.number == number
-        free = found.change[mine & ~found.clipped]
-        bound[number] = not len(free)
-        changes = found.change[mine]
-        value[number] = np.median(free) if len(free) else changes[np.argmax(np.abs(changes))]
-        spread[number] = np.ptp(free) if len(free) else 0.0
+        has_number = found.number == number
+        unclipped = found.change[has_number & ~found.clipped]
+        bound[number] = not len(unclipped)
+        changes = found.change[has_number]
+        value[number] = np.median(unclipped) if len(unclipped) else changes[np.argmax(np.abs(changes))]
+        spread[number] = np.ptp(unclipped) if len(unclipped) else 0.0
     largest = float(spread.max(initial=0.0))
     return NoiseTable(value, births, bound, largest, largest <= _SAME * found.rounding)

@@ -30,16 +30,20 @@ def prediction(predicted: Iterable[float], seen: Iterable[float]) -> dict[str, A
         the two-sided p value of an exact binomial test that signs agree at random. NaN with fewer than three pairs.
     """
     x, y = (np.array(list(values), np.float64) for values in (predicted, seen))
-    known = np.isfinite(x) & np.isfinite(y)
-    x, y = x[known], y[known]
+    is_finite = np.isfinite(x) & np.isfinite(y)
+    x, y = x[is_finite], y[is_finite]
     n = len(x)
-    same = int(np.count_nonzero(np.sign(x) == np.sign(y)))
-    ends = {"same_sign": same, "p_sign": float(stats.binomtest(same, n).pvalue) if n else NAN}
+    same_sign = int(np.count_nonzero(np.sign(x) == np.sign(y)))
+    sign_test = {"same_sign": same_sign, "p_sign": float(stats.binomtest(same_sign, n).pvalue) if n else NAN}
     fitted = ("correlation", "rank_correlation", "slope", "low", "high")
     if n < FEWEST or np.ptp(x) == 0 or np.ptp(y) == 0:
-        return {"pairs": n} | dict.fromkeys(fitted, NAN) | ends
+        return {"pairs": n} | dict.fromkeys(fitted, NAN) | sign_test
     slope = float(x @ y / (x @ x))
     error = math.sqrt(float(np.sum((y - slope * x) ** 2)) / (n - 1) / float(x @ x))
     half = float(stats.t.ppf(0.5 + LEVEL / 2, n - 1)) * error
-    plain, ranked = (float(np.corrcoef(a, b)[0, 1]) for a, b in ((x, y), (stats.rankdata(x), stats.rankdata(y))))
-    return {"pairs": n} | dict(zip(fitted, (plain, ranked, slope, slope - half, slope + half), strict=True)) | ends
+    pearson, spearman = (float(np.corrcoef(a, b)[0, 1]) for a, b in ((x, y), (stats.rankdata(x), stats.rankdata(y))))
+    return (
+        {"pairs": n}
+        | dict(zip(fitted, (pearson, spearman, slope, slope - half, slope + half), strict=True))
+        | sign_test
+    )

@@ -72,6 +72,6 @@ def _mean(worlds: Sequence[Sequence[AppetiteBin]]) -> tuple[np.ndarray, np.ndarr
     for world in worlds:
         for part in world:
             by_low.setdefault(part.low, []).append(part)
-    shown = [by_low[low] for low in sorted(by_low) if 2 * len(by_low[low]) > len(worlds)]
-    x = [float(np.mean([b.weight for b in parts])) for parts in shown]
-    return np.array(x), np.array([float(np.mean([b.eaten for b in parts])) for parts in shown])
+    common_bins = [by_low[low] for low in sorted(by_low) if 2 * len(by_low[low]) > len(worlds)]
+    x = [float(np.mean([b.weight for b in parts])) for parts in common_bins]
+    return np.array(x), np.array([float(np.mean([b.eaten for b in parts])) for parts in common_bins])

@@ -48,13 +48,13 @@ def draw_arenas(rows: Sequence[Sequence[ArenaPanel]]) -> Figure:
         figure = new_figure(_WIDTH, height)
         figure.set_layout_engine("none")  # it would stretch panels to different scales
         top = height
-        for row, tall in zip(rows, tallest, strict=True):
+        for row, row_height in zip(rows, tallest, strict=True):
             top -= _HEAD
             for column, panel in enumerate(row):
                 w, h = panel.config.arena.width * scale, panel.config.arena.height * scale
-                place = ((_GAP + column * cell) / _WIDTH, (top - h) / height, w / _WIDTH, h / height)
-                _draw_panel(figure.add_axes(place), panel)
-            top -= tall
+                rectangle = ((_GAP + column * cell) / _WIDTH, (top - h) / height, w / _WIDTH, h / height)
+                _draw_panel(figure.add_axes(rectangle), panel)
+            top -= row_height
         legend_place = ((_GAP + (columns - 1) * cell) / _WIDTH, 1 - _HEAD / height)
         figure.legend(
             handles=_handles(rows), loc="upper left", bbox_to_anchor=legend_place, borderpad=0, borderaxespad=0
@@ -111,8 +111,8 @@ def _draw_placement(axes: Axes, placement: PlacementConfig, color: str) -> None:
             axes.add_patch(Ellipse(center, width, height, fill=False, edgecolor=color, linewidth=1.0, zorder=6))
     if placement.form == "switching":
         centers = placement.centers
-        for number, (center, following) in enumerate(zip(centers, centers[1:] + centers[:1], strict=True), 1):
-            arrow = FancyArrowPatch(center, following, arrowstyle="-|>", mutation_scale=11, shrinkA=9, shrinkB=9)
+        for number, (center, next_center) in enumerate(zip(centers, centers[1:] + centers[:1], strict=True), 1):
+            arrow = FancyArrowPatch(center, next_center, arrowstyle="-|>", mutation_scale=11, shrinkA=9, shrinkB=9)
             arrow.set(color=INK, linewidth=1.3, zorder=7)
             axes.add_patch(arrow)
             box = {"boxstyle": "circle,pad=0.2", "facecolor": "white", "edgecolor": INK, "linewidth": 0.8}
@@ -123,15 +123,15 @@ def _handles(rows: Sequence[Sequence[ArenaPanel]]) -> list[Line2D]:
     panels = [panel for row in rows for panel in row]
     colors = {kind: color for panel in panels for kind, color in meal_colors(panel.config).items()}
     places = [food.placement for panel in panels for food in panel.config.food.values()]
-    dot = {"marker": "o", "linestyle": "", "markeredgecolor": MUTED, "markeredgewidth": 0.5}
-    handles = [Line2D([], [], color=AGENT_COLOR, markersize=7, label="agent", **dot)]
-    dot |= {"markersize": 4, "markeredgecolor": "white"}
-    handles += [Line2D([], [], color=color, label=f"{kind} food", **dot) for kind, color in colors.items()]
-    if any(place.form != "uniform" for place in places):
+    marker_style = {"marker": "o", "linestyle": "", "markeredgecolor": MUTED, "markeredgewidth": 0.5}
+    handles = [Line2D([], [], color=AGENT_COLOR, markersize=7, label="agent", **marker_style)]
+    marker_style |= {"markersize": 4, "markeredgecolor": "white"}
+    handles += [Line2D([], [], color=color, label=f"{kind} food", **marker_style) for kind, color in colors.items()]
+    if any(placement.form != "uniform" for placement in places):
         ring = {"marker": "o", "linestyle": "", "markersize": 9, "markerfacecolor": "none"}
         label = "where food grows, if not\nanywhere: Gaussian, 1 and 2 sd"
         handles.append(Line2D([], [], color=next(iter(colors.values())), label=label, **ring))
-    for after in sorted({place.switch_after for place in places if place.form == "switching"}):
-        label = f"next place, after {after:,} eaten"
+    for threshold in sorted({placement.switch_after for placement in places if placement.form == "switching"}):
+        label = f"next place, after {threshold:,} eaten"
         handles.append(Line2D([], [], color=INK, linewidth=1.3, marker=">", markersize=4, markevery=[1], label=label))
     return handles

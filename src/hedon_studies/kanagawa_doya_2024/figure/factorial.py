@@ -39,20 +39,20 @@ def draw_cells(worlds: pl.DataFrame, conditions: Sequence[str], measures: Sequen
                 )
                 if rows.height:
                     _draw_cell(axes, line, rows, measure)
-            known = worlds[measure.name].drop_nulls().to_numpy().astype(np.float64)
-            if not len(known):
+            recorded = worlds[measure.name].drop_nulls().to_numpy().astype(np.float64)
+            if not len(recorded):
                 say_empty(axes, "no world has a value")
             elif measure.ratio:
-                _scale(axes, known.min(), known.max())
-            elif known.min() <= 0 <= known.max():
+                _scale(axes, recorded.min(), recorded.max())
+            elif recorded.min() <= 0 <= recorded.max():
                 axes.axvline(0, color=PALE, linewidth=1.0, zorder=0.5)
         handles = [
             Line2D([], [], color=BLUE, marker="o", linestyle="", markersize=4, label="world"),
             Line2D([], [], color=INK, marker="|", linestyle="", markersize=9, markeredgewidth=2, label="mean"),
         ]
         if worlds["died_out"].any():
-            hollow = {"marker": "o", "linestyle": "", "markersize": 4, "markerfacecolor": "white"}
-            handles.append(Line2D([], [], color=VERMILION, label="world that died out", **hollow))
+            extinct_style = {"marker": "o", "linestyle": "", "markersize": 4, "markerfacecolor": "white"}
+            handles.append(Line2D([], [], color=VERMILION, label="world that died out", **extinct_style))
         figure.legend(handles=handles, loc="outside upper left", ncols=3, labelcolor=MUTED)
     return figure
 
@@ -83,10 +83,10 @@ def draw_effects(effects: pl.DataFrame, names: Sequence[str], measures: Sequence
                 _draw_effect(axes, names.index(row["effect"]), row, low, high)
             axes.set_xlim(low, high)
             axes.set_xlabel("ratio" if measure.ratio else "difference")
-        sure = {"color": BLUE, "marker": "o", "markersize": 4.5}
+        effect_style = {"color": BLUE, "marker": "o", "markersize": 4.5}
         handles = [
-            Line2D([], [], **sure, linewidth=1.4, label="effect and 95 % interval, p (Holm) ≤ 0.05"),
-            Line2D([], [], **sure, linewidth=1.4, markerfacecolor="white", label="p above 0.05, or none"),
+            Line2D([], [], **effect_style, linewidth=1.4, label="effect and 95 % interval, p (Holm) ≤ 0.05"),
+            Line2D([], [], **effect_style, linewidth=1.4, markerfacecolor="white", label="p above 0.05, or none"),
             Line2D([], [], color=MUTED, linewidth=4.0, alpha=0.35, label="range over seeds"),
         ]
         figure.legend(handles=handles, loc="outside upper left", ncols=3, labelcolor=MUTED)
@@ -111,9 +111,11 @@ def _panels(measures: Sequence[Measure], lines: Sequence[str]) -> tuple[Figure, 
 def _draw_cell(axes: Axes, line: int, rows: pl.DataFrame, measure: Measure) -> None:
     values = rows[measure.name].to_numpy().astype(np.float64)
     offset = np.linspace(-_SPREAD, _SPREAD, len(values)) if len(values) > 1 else np.zeros(1)
-    gone = rows["died_out"].to_numpy()
-    axes.scatter(values[~gone], line + offset[~gone], s=17, color=BLUE, linewidths=0, alpha=0.8, zorder=3)
-    axes.scatter(values[gone], line + offset[gone], s=17, facecolors="white", edgecolors=VERMILION, zorder=3)
+    is_extinct = rows["died_out"].to_numpy()
+    axes.scatter(values[~is_extinct], line + offset[~is_extinct], s=17, color=BLUE, linewidths=0, alpha=0.8, zorder=3)
+    axes.scatter(
+        values[is_extinct], line + offset[is_extinct], s=17, facecolors="white", edgecolors=VERMILION, zorder=3
+    )
     mean = np.exp(np.log(values).mean()) if measure.ratio else values.mean()
     axes.plot([mean, mean], [line - 0.38, line + 0.38], color=INK, linewidth=2.0, zorder=2)
 
@@ -126,9 +128,9 @@ def _draw_effect(axes: Axes, line: int, row: dict, low: float, high: float) -> N
         for bound, edge, marker in ((row["low"] < low, low, "<"), (row["high"] > high, high, ">")):
             if bound:
                 axes.plot(edge, line, marker=marker, color=BLUE, markersize=5, clip_on=False, zorder=3)
-    sure = row["p_holm"] is not None and row["p_holm"] <= 0.05
-    fill = BLUE if sure else "white"
-    axes.scatter(row["estimate"], line, s=24, c=[fill], edgecolors=BLUE, linewidths=1.2, zorder=4)
+    is_significant = row["p_holm"] is not None and row["p_holm"] <= 0.05
+    face_color = BLUE if is_significant else "white"
+    axes.scatter(row["estimate"], line, s=24, c=[face_color], edgecolors=BLUE, linewidths=1.2, zorder=4)
 
 
 def _reach(rows: pl.DataFrame, measure: Measure) -> tuple[float, float]:

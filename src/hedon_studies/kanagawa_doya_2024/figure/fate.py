@@ -44,19 +44,19 @@ def draw_fates(worlds: Sequence[WorldRecord], fates: Sequence[Fate]) -> Figure:
         panels = figure.subplots(2, 2, sharex=True).ravel()
         for axes, (column, title) in zip(panels, titles.items(), strict=True):
             axes.set_title(title, fontsize=9)
-            for i, found in enumerate(fates):
-                mine = rows.filter((pl.col("world") == i) & pl.col(column).is_not_null())
-                x, y = mine["step"].to_numpy() / unit, mine[column].to_numpy()
-                axes.plot(x, y, color=_COLORS[found.fate], linewidth=1.1, alpha=0.75)
+            for i, fate in enumerate(fates):
+                world_rows = rows.filter((pl.col("world") == i) & pl.col(column).is_not_null())
+                x, y = world_rows["step"].to_numpy() / unit, world_rows[column].to_numpy()
+                axes.plot(x, y, color=_COLORS[fate.fate], linewidth=1.1, alpha=0.75)
                 if len(x) and x[-1] < 0.99 * last_step(rows) / unit:
-                    axes.plot(x[-1], y[-1], marker="x", markersize=5, color=_COLORS[found.fate])
+                    axes.plot(x[-1], y[-1], marker="x", markersize=5, color=_COLORS[fate.fate])
             if column == "alive":
                 axes.set_ylim(bottom=0)
             else:
                 draw_zero_line(axes)
         for axes in panels[2:]:
             draw_time_axis(axes, rows)
-        counts = {name: sum(found.fate == name for found in fates) for name in _COLORS}
+        counts = {name: sum(fate.fate == name for fate in fates) for name in _COLORS}
         handles = [
             Line2D([], [], color=color, label=f"{name} ({counts[name]})")
             for name, color in _COLORS.items()

@@ -29,27 +29,27 @@ def draw_predictions(conditions: Mapping[str, Sequence[Drift]], titles: Mapping[
         titles: Title of each genome column.
     """
     colors = dict(zip(conditions, _COLORS, strict=False))
-    shown = {label: drifts for label, drifts in conditions.items() if drifts}
+    shown_drifts = {label: drifts for label, drifts in conditions.items() if drifts}
     with styled():
         figure = new_figure(9.0, 3.5)
         panels = figure.subplots(1, len(COMPARISONS))
-        for axes, (comparison, (predicted, seen)) in zip(panels, COMPARISONS.items(), strict=True):
+        for axes, (comparison, (predicted, observed)) in zip(panels, COMPARISONS.items(), strict=True):
             reach = 0.0
-            for label, drifts in shown.items():
+            for label, drifts in shown_drifts.items():
                 for marker, weight in zip(_MARKERS, titles, strict=False):
-                    pairs = np.array([(d[predicted], d[seen]) for d in drifts if d["weight"] == weight])
+                    pairs = np.array([(d[predicted], d[observed]) for d in drifts if d["weight"] == weight])
                     pairs = pairs.reshape(-1, 2)[np.isfinite(pairs.reshape(-1, 2)).all(axis=1)]
-                    look = {"marker": marker, "facecolors": "none", "edgecolors": colors[label], "linewidths": 1.2}
-                    axes.scatter(pairs[:, 0], pairs[:, 1], s=26, zorder=3, **look)
+                    style = {"marker": marker, "facecolors": "none", "edgecolors": colors[label], "linewidths": 1.2}
+                    axes.scatter(pairs[:, 0], pairs[:, 1], s=26, zorder=3, **style)
                     reach = max(reach, float(np.abs(pairs).max(initial=0.0)))
             _frame(axes, comparison, reach)
-            if not shown:
+            if not shown_drifts:
                 say_empty(axes, "no births recorded")
         marks = [
             Line2D([], [], color=MUTED, marker=marker, linestyle="", markerfacecolor="none", label=title)
             for marker, title in zip(_MARKERS, titles.values(), strict=False)
         ]
-        lines = [Line2D([], [], color=colors[label], linewidth=4, label=label) for label in shown]
+        lines = [Line2D([], [], color=colors[label], linewidth=4, label=label) for label in shown_drifts]
         figure.legend(handles=[*lines, *marks], loc="outside upper left", ncols=len(marks) + len(lines))
     return figure
 
