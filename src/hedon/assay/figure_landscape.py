@@ -12,6 +12,7 @@ from hedon.assay.end import End, on_surface
 from hedon.assay.landscape import Landscape, MeasureSurface
 from hedon.config.title import weight_title
 from hedon.figure.style import INK, MUTED, VERMILION, head, new_figure, styled
+from hedon.report.table import p_phrase
 
 _TITLES = {
     "descendants": "living descendants",
@@ -67,4 +68,4 @@ def _draw(figure: Figure, axes: Axes, landscape: Landscape, surface: MeasureSurf
     axes.grid(visible=False)
     axes.set_xlabel(weight_title(landscape.genes[0]), color=MUTED)
     axes.set_ylabel(weight_title(landscape.genes[1]), color=MUTED)
-    head(axes, _TITLES[surface.measure], f"chance of such a surface without effects: p = {surface.flat_p:.3g}")
+    head(axes, _TITLES[surface.measure], f"chance of such a surface without effects: {p_phrase(surface.flat_p)}")

@@ -12,6 +12,7 @@ from hedon.assay.sample import Sample
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
 from hedon.report.answer import Answer
+from hedon.report.table import p_phrase
 
 _SHOWN_TIMES = 10
 
@@ -102,7 +103,7 @@ def draw_contest(contest: Contest) -> Figure:
         head(
             right,
             "Log ratio",
-            f"s = {selection.value:.3g} per generation, {selection.low:.3g} to {selection.high:.3g}, p {contest.p:.3g}",
+            f"s = {selection.value:.3g} per generation, {selection.low:.3g} to {selection.high:.3g}, {p_phrase(contest.p)}",
         )
     return figure
 

@@ -15,6 +15,7 @@ from hedon.assay.report import assay_answer, estimate_row, world_line, world_tab
 from hedon.assay.sample import Sample
 from hedon.figure.named import NamedFigure
 from hedon.report.answer import Answer
+from hedon.report.table import format_p
 
 OUTCOMES = "founders-outcome.csv"
 
@@ -113,7 +114,7 @@ def _surfaces(landscape: Landscape) -> ResultTable:
     note = "Fitness is relative to the mean of the own world. Intervals: bootstrap over worlds. The smooth surface "
     note += "is too low at a narrow peak, and its interval misses the true height there in two of three cases. "
     note += f"By {', '.join(edges)} the surface is highest at the edge of the founders' range. " if edges else ""
-    flat = ", ".join(f"{name} {surface.flat_p:.3g}" for name, surface in landscape.surfaces.items())
+    flat = ", ".join(f"{name} {format_p(surface.flat_p)}" for name, surface in landscape.surfaces.items())
     note += f"Chance that two genes explain this much or more if they do nothing (permutation within worlds): {flat}."
     return make_table("surface", "Fitness over two genes", rows, note)
 

@@ -18,6 +18,7 @@ from hedon.config.problem import format_value, nearest
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, styled
 from hedon.report.answer import Answer, simple_answer
+from hedon.report.table import p_phrase
 from hedon.statistic.contrast import Contrast, independent_contrast, paired_contrast
 from hedon.statistic.correction import holm
 from hedon.statistic.extinction import log_rank
@@ -257,7 +258,7 @@ def _extinct(
     for row, each in zip(rows, known, strict=True):
         row["mean steps survived"] = float(each["survived"].cast(pl.Float64).to_numpy().mean())
     p = _survival_chance(known, factors)
-    note = f"p = {p:.3g}, by a log-rank test in which worlds exchange their conditions"
+    note = f"{p_phrase(p)}, by a log-rank test in which worlds exchange their conditions"
     note += " within equal settings of all other factors." if factors else "."
     return [make_table("extinct", "Worlds that died out", rows, note)]
 

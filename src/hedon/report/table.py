@@ -13,6 +13,8 @@ NOTHING = "-"
 """Shown in place of a missing number."""
 HIDDEN = ("source", "region_low", "region_high", "window")
 """Columns that appear only in the files."""
+LEAST_P = 1e-4
+"""Smallest p value that is shown; how much smaller one is depends on assumptions that few worlds cannot check."""
 _INTERVAL = ("low", "high")
 _KEYS = ("condition", "species", "fitness", "quantity", "test")
 """Columns that distinguish the rows of one gene."""
@@ -74,7 +76,7 @@ def _with_neutral_folded(rows: pl.DataFrame) -> pl.DataFrame:
 
 def is_numeric(rows: Sequence[Sequence[str]], column: int) -> bool:
     """Whether a displayed column contains numbers, which are right-aligned."""
-    return all(not row[column] or row[column][0] in "0123456789-" for row in rows)
+    return all(not row[column] or row[column][0] in "0123456789-<" for row in rows)
 
 
 def format_number(value: float | None) -> str:
@@ -86,10 +88,26 @@ def format_number(value: float | None) -> str:
     return f"{value:#.3g}".rstrip(".") if abs(value) >= 0.01 or value == 0 else f"{value:.2g}"
 
 
+def format_p(p: float | None) -> str:
+    """A p value for display: like any number, but "< 0.0001" if it is smaller."""
+    return f"< {LEAST_P:g}" if p is not None and p < LEAST_P else format_number(p)
+
+
+def p_phrase(p: float) -> str:
+    """A p value within a sentence: "p = 0.028" or "p < 0.0001"."""
+    return f"p {format_p(p)}" if p < LEAST_P else f"p = {p:.2g}"
+
+
 def _cell(row: Mapping[str, Any], column: str, merged: bool) -> str:
     if merged and column == "low":
         return _interval(row)
-    return _format(row[column])
+    value = row[column]
+    return format_p(value) if isinstance(value, float) and _holds_p(column) else _format(value)
+
+
+def _holds_p(column: str) -> bool:
+    """Whether a column holds p values: "p", or one with its kind, as in "p_holm" and "p slope"."""
+    return column == "p" or column.startswith(("p_", "p "))
 
 
 def _interval(row: Mapping[str, Any]) -> str:

@@ -11,6 +11,7 @@ from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import Conditions, WorldRecord
 from hedon.config.title import weight_title
 from hedon.record.reader import Run
+from hedon.report.table import p_phrase
 from hedon.statistic.law import normal_quantile
 
 LEVEL = 0.05
@@ -87,7 +88,7 @@ def _span(values: pl.Series) -> str:
 
 def _verdict(test: Mapping[str, Any], tests: int, seconds: float | None) -> str:
     """The result of the test; if undecided, also how long new worlds must be to show the trend, if it is real."""
-    score, chance = test["effect"], f"p = {test['p_holm']:.2g}, corrected for {tests} tests against drift"
+    score, chance = test["effect"], f"{p_phrase(test['p_holm'])}, corrected for {tests} tests against drift"
     if test["p_holm"] <= LEVEL:
         return f"selected {'for' if score > 0 else 'against'} ({chance})."
     if test["p"] > HINT:

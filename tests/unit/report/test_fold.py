@@ -7,7 +7,8 @@ from resumed_run import small_run
 from hedon.analysis.result import make_table
 from hedon.analysis.world.record import read_worlds
 from hedon.record.reader import open_run
-from hedon.report.table import cells
+from hedon.report.markdown import pipe_table
+from hedon.report.table import cells, is_numeric, p_phrase, table_csv, table_json
 
 
 def test_neutral_genes_are_one_row_of_each_group():
@@ -25,6 +26,22 @@ def test_neutral_genes_are_one_row_of_each_group():
     one = make_table("one", "One", [row for row in rows if row["weight"] != "neutral_2"])
     assert [row[headers.index("weight")] for row in cells(one)[1]] == ["w_food", "neutral_1"] * 2
     assert cells(make_table("none", "None", [{"weight": 3.0}, {"weight": 4.0}]))[1] == [["3.00"], ["4.00"]]
+
+
+def test_people_see_no_p_below_a_ten_thousandth_and_files_have_it():
+    rows = [
+        {"gene": "w_food", "effect": 4.2e-7, "p": 4.2e-14, "p Holm": 0.00011, "p_held": 0.0},
+        {"gene": "w_action", "effect": 1.0, "p": 0.028, "p Holm": 1.0, "p_held": None},
+    ]
+    table = make_table("any", "Any", rows)
+    headers, shown = cells(table)
+    assert headers == ["gene", "effect", "p", "p Holm", "p held"]
+    assert shown == [["w_food", "4.2e-07", "< 0.0001", "0.00011", "< 0.0001"], ["w_action", "1.00", "0.0280", "1.00", ""]]
+    assert [is_numeric(shown, i) for i in range(5)] == [False, True, True, True, True]
+    assert r"| \< 0.0001 |" in pipe_table(headers, shown)
+    assert "4.2e-14" in table_csv(table)
+    assert table_json(table)["rows"][0]["p"] == 4.2e-14
+    assert (p_phrase(4.2e-14), p_phrase(0.0284), p_phrase(1.0)) == ("p < 0.0001", "p = 0.028", "p = 1")
 
 
 def test_conditions_of_one_name_are_told_apart_by_what_differs(tmp_path: Path):
