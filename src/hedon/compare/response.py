@@ -37,7 +37,8 @@ def responses(
 
     Args:
         table: Table of worlds.
-        asked: Columns to show; by default the usual ones.
+        asked: Columns to show; by default the usual ones. The name of a gene, such as "w_action", stands for the column
+            with its mean.
         factors: Columns that distinguish conditions.
         titles: Titles of measures that configs add, by name.
 
@@ -46,6 +47,7 @@ def responses(
     """
     fit = [name for name, kind in table.schema.items() if kind.is_numeric() or kind == pl.Boolean]
     fit = [name for name in fit if name not in (*KEYS, *factors)]
+    asked = [_with_mean(name, fit) for name in asked]
     for name in asked:
         if name not in fit:
             near = nearest(name, fit)
@@ -54,6 +56,12 @@ def responses(
     known = {name: found for name in fit if (found := column_measure(name, titles))}
     shown = asked or [name for name, found in known.items() if found.usual] or fit
     return {name: known[name].title if name in known else name for name in shown}
+
+
+def _with_mean(name: str, columns: Sequence[str]) -> str:
+    """The column with the mean of a gene if only its name is given; the name itself if there is no or no single one."""
+    means = [each for each in columns if f"{name}_mean" in (each, each.rpartition(".")[2])]
+    return means[0] if name not in columns and len(means) == 1 else name
 
 
 def points(table: pl.DataFrame, factors: Sequence[str], response: str) -> list[Point]:
