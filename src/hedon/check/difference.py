@@ -9,6 +9,7 @@ import polars as pl
 
 from hedon.analysis.world.record import WorldRecord, read_worlds
 from hedon.config.dump import diff
+from hedon.config.problem import format_value
 from hedon.record.manifest import Manifest
 from hedon.record.reader import open_run
 
@@ -94,6 +95,16 @@ def compare_runs(a: Path, b: Path) -> Difference:
         ends=[seed for seed in equal_seeds if _ends_differ(first_manifest, second_manifest, seed)],
         lonely=sorted(set(first_manifest.seeds) ^ set(second_manifest.seeds)),
     )
+
+
+def changed_line(name: str, before: Any, after: Any) -> str:
+    """How messages show a setting or another value that differs: "energy.basic_cost: 0.001 -> 0.002"."""
+    return f"{name}: {changed_value(before)} -> {changed_value(after)}"
+
+
+def changed_value(value: Any) -> str:
+    """A value that differs, as messages show it; "(none)" for None."""
+    return "(none)" if value is None else format_value(value)
 
 
 def _by_seed(worlds: Sequence[WorldRecord]) -> dict[int, dict[str, WorldRecord]]:

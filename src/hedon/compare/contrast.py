@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
 from hedon.compare.error import CompareError
-from hedon.compare.match import Matched, match
+from hedon.compare.match import Matched, choose_design, match
+from hedon.compare.preface import make_preface
 from hedon.compare.response import responses
 from hedon.compare.source import WorldTable
 from hedon.config.problem import format_value, nearest
@@ -148,14 +149,14 @@ def compare(
     *,
     paired: bool = True,
 ) -> list[Compared]:
-    """Compares two groups of worlds. Worlds with the same seed count once, with their mean.
+    """Compares two groups of worlds, all measures in one design. Worlds of one seed count once, with their mean.
 
     Args:
         first: Worlds of the first condition.
         second: Worlds of the second condition.
         shown: Columns of the measures to compare, with their titles.
         factors: Columns of all other factors.
-        paired: Whether to compare worlds of equal seeds in pairs.
+        paired: Whether to compare worlds of equal seeds in pairs; see `choose_design`.
     """
     found = []
     for name, title in shown.items():
@@ -197,15 +198,15 @@ def compare_answer(
     if not only:
         known = [name for name in shown if first[name].count() and second[name].count()]
         shown = {name: shown[name] for name in known}
-    found = compare(first, second, shown, held, paired=paired)
+    design = choose_design(first, second, names, held, paired=paired)
+    found = compare(first, second, shown, held, paired=design.paired)
     tables = [_contrasts(found, names, others, worlds.cautions), *_extinct(first, second, names, held)]
-    content = {"source": worlds.name, "by": by, "between": list(levels), "also_differs": others}
-    content |= {"steps": worlds.steps} if worlds.steps else {}
-    intro = f"{by}: {names[1]} against {names[0]}"
-    intro += f", worlds of {worlds.steps:,} steps." if worlds.steps else "."
+    preface = make_preface(worlds, by, names, design)
+    content = {"source": worlds.name, "by": by, "between": list(levels), "also_differs": others, **preface.content}
     title = f"{worlds.name}: {by}, {names[0]} and {names[1]}"
     figure = NamedFigure("compare", "Which measures differ?", draw_contrasts(found, by, names))
-    return simple_answer("compare", title, content, tables, intro, [figure])
+    answer = simple_answer("compare", title, content, tables, preface.lead, [figure])
+    return replace(answer, page=preface.on_page(answer.page), lines=preface.lines)
 
 
 def _contrasts(
@@ -234,14 +235,18 @@ def _contrasts(
         f"Differences: {names[1]} minus {names[0]}, within equal settings of all other factors; worlds "
         f"of one seed count once. Intervals need {FOR_INTERVAL} pairs, or {FOR_INTERVAL} worlds of each condition. "
         "Effect size: in standard deviations of the pairs, or within conditions. Left out: worlds without a "
-        "counterpart. p: of pairs, by exchanging their signs, exact if there are few; otherwise Welch's t test; p "
-        f"Holm: corrected for these {len(found)} measures. Worlds that died out count if they have a value."
+        "counterpart or a value. p: of pairs, by exchanging their signs, exact if there are few; otherwise Welch's t "
+        f"test; p Holm: {_family(len(found))}. Worlds that died out count if they have a value."
     )
     most = max((len(each.matched.values) for each in found if each.matched.paired), default=0)
     if 0 < most < SIGNIFICANT_PAIRS:
         note += f" With {count(most, 'pair')}, no p is below {2 / 2**most:.2g}: take at least {SIGNIFICANT_PAIRS}."
     note += f" The conditions differ in {', '.join(others)} too: the design does not cross them." if others else ""
     return make_table("contrast", f"{names[1]} against {names[0]}", rows, " ".join([note, *cautions]))
+
+
+def _family(measures: int) -> str:
+    return "the same as p, since there is one measure" if measures == 1 else f"corrected for these {measures} measures"
 
 
 def _extinct(

@@ -31,6 +31,7 @@ class Answer:
         content: Contents of the JSON file besides the tables; None to write no JSON file.
         tables: Tables for the JSON file and the terminal.
         files: Contents of further files, by path.
+        lines: Lines before the tables on the terminal.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Answer:
     content: Mapping[str, Any] | None = None
     tables: Sequence[ResultTable] = ()
     files: Mapping[str, str] = field(default_factory=dict)
+    lines: Sequence[str] = ()
 
 
 def simple_answer(

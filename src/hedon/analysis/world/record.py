@@ -186,6 +186,12 @@ def read_worlds(runs: Iterable[Run]) -> list[WorldRecord]:
     return list(longest.values())
 
 
+def condition_names(runs: Sequence[Run]) -> list[str]:
+    """The name of each run's condition, in their order, as in a report of all of these runs."""
+    labels = _labels(runs)
+    return [labels[_key(run)] for run in runs]
+
+
 def by_condition(worlds: Iterable[WorldRecord]) -> dict[str, list[WorldRecord]]:
     """Worlds by condition, in their order."""
     groups: dict[str, list[WorldRecord]] = {}

@@ -1,7 +1,7 @@
 """Shows why two runs differ: settings, versions, and the first window and quantity in which their worlds diverge."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -21,14 +21,14 @@ def show_difference(a: Path, b: Path) -> bool:
     Raises:
         RecordError: A folder holds no run or a damaged one.
     """
-    from hedon.check.difference import compare_runs
+    from hedon.check.difference import changed_line, compare_runs
     from hedon.text import printable
 
     found = compare_runs(a, b)
     for title, rows in (("settings", found.settings), ("made by", found.made_by)):
         typer.echo(f"{title}: {'the same' if not rows else ''}".rstrip())
         for name, before, after in rows:
-            typer.echo(printable(f"  {name}: {_text(before)} -> {_text(after)}"))
+            typer.echo(printable(f"  {changed_line(name, before, after)}"))
     typer.echo("worlds:")
     for each in found.partings:
         typer.echo(f"  seed {each.seed}: {_parting(each, ends_differ=each.seed in found.ends)}")
@@ -38,6 +38,8 @@ def show_difference(a: Path, b: Path) -> bool:
 
 
 def _parting(each: "Parting", *, ends_differ: bool) -> str:
+    from hedon.check.difference import changed_value
+
     if each.step is None:
         end = ", but their states at the end differ" if ends_differ else ""
         if each.since and each.until <= each.since:
@@ -47,12 +49,7 @@ def _parting(each: "Parting", *, ends_differ: bool) -> str:
     where = f"in the window that ends at step {each.step:,}"
     if each.agent is not None:
         where = f"at agent {each.agent}, born at step {each.step:,}; all windows are equal"
-    shown = [f"{name} {_text(before)} -> {_text(after)}" for name, (before, after) in each.values.items()]
+    pairs = {name: tuple(map(changed_value, values)) for name, values in each.values.items()}
+    shown = [f"{name} {before} -> {after}" for name, (before, after) in pairs.items()]
     more = f", and {len(shown) - SHOWN} more" if len(shown) > SHOWN else ""
     return f"part {where}{whose}: {', '.join(shown[:SHOWN])}{more}"
-
-
-def _text(value: Any) -> str:
-    from hedon.config.problem import format_value
-
-    return "(none)" if value is None else format_value(value)
