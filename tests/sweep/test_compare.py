@@ -259,7 +259,8 @@ def test_worlds_of_a_table_and_of_two_assays_are_pilots(tmp_path):
         (("--sd", "1", "--effect", "x"), "--effect x: must be numbers other than 0"),
         (("--sd", "0"), "must be above 0"),
         (("--sd", "1", "--power", "0.2", "--level", "0.3"), "must be above --level = 0.3"),
-        (("nowhere",), "nowhere: holds no worlds to compare: give runs, a sweep, an assay, a study, or a table"),
+        (("nowhere",), "nowhere does not exist"),
+        (("empty",), "empty: holds no worlds to compare: give runs, a sweep, an assay, a study, or a table"),
         (("a.csv", "--only", "slpe"), "did you mean slope?"),
         (("a.csv", "--by", "slpe"), "did you mean slope?"),
         (("a.csv", "--by", "arm"), "name two values of arm with --between A,B: there are 1, 2, 3"),
@@ -272,6 +273,7 @@ def test_worlds_of_a_table_and_of_two_assays_are_pilots(tmp_path):
 )
 def test_what_says_nothing_of_worlds_is_refused(tmp_path, monkeypatch, words, message):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
     (tmp_path / "a.csv").write_text("seed,slope,arm\n1,0.5,1\n2,0.7,2\n3,0.1,3\n")
     (tmp_path / "twice.csv").write_text("seed,slope\n1,0.5\n2,0.5\n2,0.7\n")
     (tmp_path / "same.csv").write_text("seed,slope\n1,0.5\n2,0.5\n")
@@ -318,7 +320,7 @@ def test_two_runs_are_compared_at_their_common_length(two_runs, tmp_path):
 def test_a_folder_of_runs_is_compared_by_their_conditions(two_runs, tmp_path):
     labels = [f"baseline (corrected): energy.basic_cost {cost}" for cost in (0.001, 0.004)]
     within = compared(tmp_path, str(two_runs), "--between", ",".join(labels))
-    apart = compared(tmp_path, str(two_runs / "cheap"), str(two_runs / "dear"))
+    apart = compared(tmp_path / "apart", str(two_runs / "cheap"), str(two_runs / "dear"))
     assert {name: row["difference"] for name, row in within.items()} == {
         name: row["difference"] for name, row in apart.items()
     }
@@ -379,7 +381,7 @@ def test_frequencies_of_one_seed_are_worlds_of_several_shares(tmp_path):
         (("a.csv", "a.csv"), "a.csv is named twice"),
         (("a.csv", "b.csv"), "have no measure in common"),
         (("a.csv",), "a.csv holds worlds of one condition: name a second source"),
-        (("a.csv", "nowhere"), "nowhere: holds no worlds to compare"),
+        (("b.csv", "a.cvs"), "a.cvs does not exist; did you mean a.csv?"),
     ],
 )
 def test_sources_that_cannot_be_compared_are_refused(tmp_path, monkeypatch, words, message):
