@@ -6,6 +6,8 @@ import shlex
 
 LINE = 200
 """Maximum characters of a name or a value in a message; more would hide the message."""
+LEAST_P = 1e-4
+"""Smallest p value that people are shown; how much smaller one is depends on assumptions that few worlds can check."""
 
 
 def printable(text: str) -> str:
@@ -32,3 +34,8 @@ def count(number: int, noun: str) -> str:
     """A count with its noun: "1 run", "2 runs"."""
     ending = "" if number == 1 else "es" if noun.endswith("ch") else "s"
     return f"{number:,} {noun}{ending}"
+
+
+def p_phrase(p: float) -> str:
+    """A p value within a sentence: "p = 0.028" or "p < 0.0001"."""
+    return f"p < {LEAST_P:g}" if p < LEAST_P else f"p = {p:.2g}"

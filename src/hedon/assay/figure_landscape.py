@@ -12,7 +12,7 @@ from hedon.assay.end import End, on_surface
 from hedon.assay.landscape import Landscape, MeasureSurface
 from hedon.config.title import weight_title
 from hedon.figure.style import INK, MUTED, VERMILION, head, new_figure, styled
-from hedon.report.table import p_phrase
+from hedon.text import p_phrase
 
 _TITLES = {
     "descendants": "living descendants",

@@ -12,7 +12,7 @@ from hedon.assay.sample import Sample
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
 from hedon.report.answer import Answer
-from hedon.report.table import p_phrase
+from hedon.text import p_phrase
 
 _SHOWN_TIMES = 10
 

@@ -19,12 +19,11 @@ from hedon.config.problem import format_value, nearest
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, styled
 from hedon.report.answer import Answer, simple_answer
-from hedon.report.table import p_phrase
 from hedon.statistic.contrast import Contrast, independent_contrast, paired_contrast
 from hedon.statistic.correction import holm
 from hedon.statistic.extinction import log_rank
 from hedon.statistic.minimum import FOR_INTERVAL
-from hedon.text import count
+from hedon.text import count, p_phrase
 
 SIGNIFICANT_PAIRS = 6
 """Smallest number of pairs for which a sign-flip test can have a p value below 0.05: 2 / 2⁶ is 0.03."""

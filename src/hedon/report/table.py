@@ -8,13 +8,12 @@ import polars as pl
 
 from hedon.analysis.result import ResultTable
 from hedon.statistic.minimum import FOR_INTERVAL
+from hedon.text import LEAST_P
 
 NOTHING = "-"
 """Shown in place of a missing number."""
 HIDDEN = ("source", "region_low", "region_high", "window")
 """Columns that appear only in the files."""
-LEAST_P = 1e-4
-"""Smallest p value that is shown; how much smaller one is depends on assumptions that few worlds cannot check."""
 _INTERVAL = ("low", "high")
 _KEYS = ("condition", "species", "fitness", "quantity", "test")
 """Columns that distinguish the rows of one gene."""
@@ -91,11 +90,6 @@ def format_number(value: float | None) -> str:
 def format_p(p: float | None) -> str:
     """A p value for display: like any number, but "< 0.0001" if it is smaller."""
     return f"< {LEAST_P:g}" if p is not None and p < LEAST_P else format_number(p)
-
-
-def p_phrase(p: float) -> str:
-    """A p value within a sentence: "p = 0.028" or "p < 0.0001"."""
-    return f"p {format_p(p)}" if p < LEAST_P else f"p = {p:.2g}"
 
 
 def _cell(row: Mapping[str, Any], column: str, merged: bool) -> str:

@@ -11,8 +11,8 @@ from hedon.analysis.result import ResultTable
 from hedon.analysis.world.record import Conditions, WorldRecord
 from hedon.config.title import weight_title
 from hedon.record.reader import Run
-from hedon.report.table import p_phrase
 from hedon.statistic.law import normal_quantile
+from hedon.text import p_phrase
 
 LEVEL = 0.05
 """Largest p, corrected for all weights and tests, at which a weight is called selected."""

@@ -16,6 +16,7 @@ from hedon.statistic.drift import score_tests
 from hedon.statistic.interval import LEVEL, distance_interval, exact_share_interval, mean_bounds, spread_interval
 from hedon.statistic.mode import modes
 from hedon.study.claim import Claim, Comparison
+from hedon.text import p_phrase
 
 Floats = NDArray[np.float64]
 
@@ -74,8 +75,8 @@ def _modes(values: Floats) -> ClaimEstimate:
     power = f"power {result.power:.2f}"
     if result.answer == "two":
         sides = f"{result.low_worlds} worlds around {result.low:.2f}, {result.high_worlds} around {result.high:.2f}"
-        return ClaimEstimate(verdict="holds", reason=f"{sides}; dip test: p {result.p:.2g}, {power}")
-    return ClaimEstimate(verdict="undecided", reason=f"dip test: p {result.p:.2f}, {power} to find two clear modes")
+        return ClaimEstimate(verdict="holds", reason=f"{sides}; dip test: {p_phrase(result.p)}, {power}")
+    return ClaimEstimate(verdict="undecided", reason=f"dip test: {p_phrase(result.p)}, {power} to find two clear modes")
 
 
 def _walk(scores: Floats) -> ClaimEstimate:
@@ -91,7 +92,7 @@ def _walk(scores: Floats) -> ClaimEstimate:
         direction.drift_low,
         direction.drift_high,
         "holds" if min(p_direction, p_distance) <= _LEVEL else "undecided",
-        f"against neutral walks: direction p {p_direction:.2g}, distance p {p_distance:.2g}",
+        f"against neutral walks: {p_phrase(p_direction)} for a direction, {p_phrase(p_distance)} for a distance",
     )
 
 

@@ -8,7 +8,8 @@ from hedon.analysis.result import make_table
 from hedon.analysis.world.record import read_worlds
 from hedon.record.reader import open_run
 from hedon.report.markdown import pipe_table
-from hedon.report.table import cells, is_numeric, p_phrase, table_csv, table_json
+from hedon.report.table import cells, is_numeric, table_csv, table_json
+from hedon.text import p_phrase
 
 
 def test_neutral_genes_are_one_row_of_each_group():

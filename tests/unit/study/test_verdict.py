@@ -54,7 +54,7 @@ def test_rules(worlds: list[WorldRecord]) -> None:
     assert (same.against_reported, math.isnan(same.p_reported)) == ("the source gives no spread", True)
     two = judge(claim([-1.0, -1.1, -0.9, -1.05, -0.95, -1.01, 5, 5.1, 4.9, 5.05, 4.95, 5.01], "modes"), "c", worlds)
     assert two.verdict == "holds"
-    assert two.reason.startswith("6 worlds around -1.00, 6 around 5.00; dip test: p 0.0")
+    assert two.reason.startswith("6 worlds around -1.00, 6 around 5.00; dip test: p = 0.0")
 
 
 def test_six_of_six_worlds_decide(worlds: list[WorldRecord]) -> None:
