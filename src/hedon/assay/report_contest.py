@@ -103,7 +103,8 @@ def draw_contest(contest: Contest) -> Figure:
         head(
             right,
             "Log ratio",
-            f"s = {selection.value:.3g} per generation, {selection.low:.3g} to {selection.high:.3g}, {p_phrase(contest.p)}",
+            f"s = {selection.value:.3g} per generation, {selection.low:.3g} to {selection.high:.3g}, "
+            f"{p_phrase(contest.p)}",
         )
     return figure
 

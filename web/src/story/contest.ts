@@ -45,7 +45,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   const table = section.querySelector("table")!;
   const share = section.querySelector<HTMLButtonElement>("#contest-picture")!;
   const buttons = ["one", "more"].map((name) => section.querySelector<HTMLButtonElement>(`#contest-${name}`)!);
-  let course: [number, number, number][] = []; // step, your descendants, those of evolution
+  let course: [number, number, number][] = []; // step, your descendants, evolution's
   let results: End[] = [];
   let busy = false;
   let turn = 0; // how often worlds were begun or forgotten: what waited for a world of an earlier turn stops
