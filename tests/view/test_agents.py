@@ -233,6 +233,8 @@ def test_of_many_agents_two_hundred_are_listed(watch):
         watched = watch(server.link)
         watched.page.locator("#tab-agents").click()
         run_live(watched, 10)
+        watched.get("hedon.seek(hedon.source.last)")
+        watched.until("hedon.frame.step === hedon.source.last")
         alive = watched.get("hedon.source.around(hedon.source.last).before.id.length")
         assert alive > 200
         watched.until(f"{COUNT} === '{alive} agents alive. The first 200 are listed.'")

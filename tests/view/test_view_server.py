@@ -4,7 +4,6 @@ import gzip
 import http.client
 import os
 import re
-import signal
 import socket
 import struct
 import subprocess
@@ -200,7 +199,7 @@ def test_a_chosen_port_has_the_same_address_after_a_restart(cache):
             connection.request("GET", links[0].split(str(port))[1])
             assert connection.getresponse().status == 200
             connection.close()
-            running.send_signal(signal.SIGINT)
+            running.terminate()
     assert links[0] == links[1]
     assert links[0].startswith(f"http://127.0.0.1:{port}/")
 

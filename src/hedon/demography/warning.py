@@ -47,8 +47,8 @@ def warnings(config: Config, species: str, levels: tuple[EnergyLevel, ...]) -> t
     if initially_fed < founders:
         fate = "starve" if floor else "starve to death"
         messages.append(
-            f"The food that grows can feed {initially_fed:,.0f} of {founders} founders in the long run; the others "
-            f"{fate}, unless few find it at first."
+            f"At first, the food that grows is enough for {initially_fed:,.0f} of {founders} founders; once the supply "
+            f"is used up, the others {fate}."
         )
     fed_on_average = fed(
         config, species_config, supply(config, species_config, lambda food: mean_factor(food.schedule, "growth_rate"))

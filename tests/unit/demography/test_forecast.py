@@ -70,7 +70,9 @@ def test_settings_that_cannot_live_or_die() -> None:
     assert "without eating" not in warnings('energy.at_zero="death"')
     assert "without eating" not in warnings("birth.kappa=3e-4")  # R0 0.76 at energy 0
     assert "stand still: food pays for 511 agents" in warnings("food.normal.growth_rate=1.0")
-    assert "10 of 50 founders; the others starve." in warnings("food.normal.growth_rate=0.02")
+    assert "10 of 50 founders; once the supply is used up, the others starve." in warnings(
+        "food.normal.growth_rate=0.02"
+    )
     free = forecast(setting("energy.basic_cost=0.0", "energy.action_cost=0.0"))
     assert math.isinf(free.fed)
     assert "any number of agents" in free.warnings[-1]
@@ -172,8 +174,8 @@ def test_growth_that_follows_time_is_told_with_its_range() -> None:
     assert found.supply == pytest.approx(1.05 * plain.supply)
     text = next(each for each in found.warnings if each.startswith("Growth follows a schedule"))
     assert f"food pays for {0.1 * plain.fed:,.0f} to {2 * plain.fed:,.0f} agents" in text
-    short = next(each for each in found.warnings if "from the start" in each)
-    assert f"pays for {0.1 * plain.fed:,.0f} of" in short, "at the start growth is at its lowest"
+    short = next(each for each in found.warnings if each.startswith("At first"))
+    assert f"is enough for {0.1 * plain.fed:,.0f} of" in short, "at the start growth is at its lowest"
 
 
 def test_what_is_said_fits_what_a_species_eats() -> None:
