@@ -77,25 +77,21 @@ class Parser {
   }
 
   private either(): Filter {
-    let left = this.both();
-    while (this.take("or")) {
-      const [a, b] = [left, this.both()];
-      // A value that is not known matters only if the other side does not decide.
-      left = (value) => {
-        const [x, y] = [a(value), b(value)];
-        return x || y ? true : x === undefined || y === undefined ? undefined : false;
-      };
-    }
-    return left;
+    return this.joined("or", () => this.both(), true);
   }
 
   private both(): Filter {
-    let left = this.negated();
-    while (this.take("and")) {
-      const [a, b] = [left, this.negated()];
+    return this.joined("and", () => this.negated(), false);
+  }
+
+  /** Filters joined by a word, of which one that gives `decisive` decides; a value that is not known matters only if none does. */
+  private joined(word: string, next: () => Filter, decisive: boolean): Filter {
+    let left = next();
+    while (this.take(word)) {
+      const [a, b] = [left, next()];
       left = (value) => {
         const [x, y] = [a(value), b(value)];
-        return x === false || y === false ? false : x === undefined || y === undefined ? undefined : true;
+        return x === decisive || y === decisive ? decisive : x === undefined || y === undefined ? undefined : !decisive;
       };
     }
     return left;

@@ -62,7 +62,8 @@ def make_preface(worlds: WorldTable, by: str, names: Sequence[str], design: Cont
     """
     step = step_sentence(worlds.steps, worlds.lengths)
     labels = [worlds.labels[name] for name in names if name in worlds.labels]
-    sentences = [step, f"{by}: {names[1]} against {names[0]}.", _described(names, labels), design.sentence]
+    pair = f"{names[1]} against {names[0]}."
+    sentences = [step, pair if by == SOURCE else f"{by}: {pair}", _described(names, labels), design.sentence]
     content: dict[str, Any] = {"steps": worlds.steps, "compared_at": step} if worlds.steps else {}
     content |= {"paired": design.paired, "design": design.sentence}
     content |= {"conditions": labels} if labels else {}

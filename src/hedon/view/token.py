@@ -24,8 +24,8 @@ def token_path() -> Path:
 def kept_token() -> str:
     """The token of this user, so that links to a chosen port survive a restart.
 
-    The file can be read by its owner only. A file that others could have read or written is replaced, which ends old
-    links; without a cache folder the token is a fresh one.
+    Only its owner can read the file. A file that others could have read or written is replaced, which ends old links;
+    without a cache folder the token is a fresh one. Windows has no mode bits: there, the user's folder is private.
     """
     with suppress(OSError, RuntimeError):  # no home, or no place to write
         path = token_path()

@@ -120,8 +120,9 @@ class WorldRecord:
         if step >= self.last_step:
             return self if planned == self.planned_step else replace(self, planned_step=planned)
         is_living = pl.col("death_step").is_null() | (pl.col("death_step") > step)
-        birth_columns = {"world", "seed", "agent_id", "parent_id", "generation", "birth_step", "birth_energy"}
-        later_columns = [name for name in self.agents.columns if name not in birth_columns | set(self.weight_names)]
+        birth_columns = {"world", "seed", "species", "agent_id", "parent_id", "mate_id", "generation"}
+        birth_columns |= {"birth_step", "birth_energy", *self.weight_names}
+        later_columns = [name for name in self.agents.columns if name not in birth_columns]
         born = self.agents.filter(pl.col("birth_step") <= step)
         return replace(
             self,
