@@ -97,7 +97,7 @@ def living(folder: Path, step: int | None, config: Config) -> Founders:
         alive = agents.filter((pl.col("birth_step") <= step) & died_later)
     if alive.is_empty():
         raise FounderError(
-            f"founders {brief(str(folder))}: nobody is alive at step {last_step if step is None else step:,}"
+            f"founders {brief(str(folder))}: no agent is alive at step {last_step if step is None else step:,}"
         )
     label = folder.resolve().name if step is None else f"{folder.resolve().name}@{step}"
     alive = alive.sort("world", "agent_id")
