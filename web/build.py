@@ -1,11 +1,13 @@
-"""Builds what `hedon view` shows: the engine's two WebAssembly modules, then the page around them.
+"""Builds what `hedon view` shows: the page, then the engine's two WebAssembly modules, if their sources have changed.
 
-`make viewer` calls it. It needs Node with npm for the page, and the dependency group `viewer` for the modules.
+`make viewer` runs it. It needs Node with npm for the page, and the dependency group `viewer` for the modules.
 """
 
+import hashlib
 import os
 import subprocess
 import sys
+import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -53,6 +55,8 @@ LINK = (
 )
 MODULES = {"hedon.wasm": (), "hedon-relaxed.wasm": ("-mrelaxed-simd",)}
 """Each module and the flags that it needs besides `FLAGS`: the second fuses multiply-adds where processors can."""
+DIGESTS = ROOT / "web" / "modules.sha256"
+"""Digests of the modules in the package and of what they were built from, so that they are built only when needed."""
 
 
 def sources() -> list[tuple[str, str]]:
@@ -83,6 +87,19 @@ def build_module(name: str, folder: Path) -> Path:
     return out
 
 
+def digests() -> str:
+    """The content of `DIGESTS` as it should be: a line for the sources, and one for each module in the package."""
+    inputs = hashlib.sha256(Path(__file__).read_bytes())
+    inputs.update(repr(tomllib.loads((ROOT / "pyproject.toml").read_text())["dependency-groups"]["viewer"]).encode())
+    headers = {path.relative_to(ROOT).as_posix() for path in (ROOT / "engine").rglob("*.h")}
+    for path in sorted({*headers, *(source for source, _ in sources())}):
+        if not path.startswith(("engine/binding/", "engine/cuda/")):  # no module includes them
+            inputs.update(path.encode() + (ROOT / path).read_bytes())
+    modules = [STATIC / name for name in MODULES if (STATIC / name).exists()]
+    lines = [("sources", inputs), *((path.name, hashlib.sha256(path.read_bytes())) for path in modules)]
+    return "".join(f"{content.hexdigest()}  {name}\n" for name, content in lines)
+
+
 def build_page(folder: Path) -> None:
     """Builds the page into a folder."""
     web = ROOT / "web"
@@ -91,12 +108,13 @@ def build_page(folder: Path) -> None:
 
 
 def main() -> None:
-    """Builds everything into the package; with an argument, into that folder."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else STATIC
-    folder.mkdir(parents=True, exist_ok=True)
-    build_page(folder)
+    """Builds the page into the package, and the modules if their sources or they themselves have changed."""
+    build_page(STATIC)
+    if DIGESTS.read_text() == digests():
+        return
     for name in MODULES:
-        build_module(name, folder)
+        build_module(name, STATIC)
+    DIGESTS.write_text(digests())
 
 
 if __name__ == "__main__":
