@@ -57,13 +57,14 @@ def unlearned_walk(
     count, max_speed = len(place), physics.max_speed
     place, velocity, spin = place.copy(), np.zeros(count, np.complex128), np.zeros(count)
     angle = own.population.heading_range * rng.random(count)
+    heading = 1j * np.exp(1j * angle)
     boundary = _Boundary(config, radius)
     is_idle = own.learning.policy == "idle"
     for _ in range(steps):
         force = (
             low + (high - low) / (1.0 + np.exp(-rng.normal(size=(2, count)))) if not is_idle else np.zeros((2, count))
         )
-        velocity += 1j * np.exp(1j * angle) * ((force[0] + force[1]) * (physics.dt / mass))
+        velocity += heading * ((force[0] + force[1]) * (physics.dt / mass))
         velocity *= slowing
         velocity = np.clip(velocity.real, -max_speed, max_speed) + 1j * np.clip(velocity.imag, -max_speed, max_speed)
         spin = (spin + (force[1] - force[0]) * (lever * physics.dt)) * turning
@@ -71,9 +72,10 @@ def unlearned_walk(
         place += path * velocity
         boundary.stop(place, velocity, spin)
         angle += turn * spin
+        heading = 1j * np.exp(1j * angle)
         velocity *= linear_decay
         spin *= angular_decay
-        yield place, 1j * np.exp(1j * angle)
+        yield place, heading
 
 
 class _Boundary:
@@ -91,7 +93,7 @@ class _Boundary:
 
     def stop(self, place: Points, velocity: Points, spin: Floats) -> None:
         """Moves bodies out of walls, removes the velocity into the wall, and makes them roll along it, in place."""
-        gap = np.outer(place.real, self.inward.real) + np.outer(place.imag, self.inward.imag) - self.offset
+        gap = place.real[:, None] * self.inward.real + place.imag[:, None] * self.inward.imag - self.offset
         deepest = gap.argmin(axis=1)  # the other wall of a corner follows in the next step
         depth = -gap[np.arange(len(place)), deepest]
         indices = np.flatnonzero(depth >= 0)
@@ -114,6 +116,8 @@ class _Boundary:
         self, indices: NDArray[np.intp], normal: Points, depth: Floats, place: Points, velocity: Points, spin: Floats
     ) -> None:
         """Contact of some bodies with a wall, with normals that point away from it."""
+        if not len(indices):
+            return
         place[indices] += depth * normal
         speed = velocity[indices] * normal.conj()  # along the normal and along the wall
         approach_speed = np.minimum(speed.real, 0.0)

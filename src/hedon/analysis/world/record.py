@@ -11,8 +11,7 @@ import polars as pl
 from hedon.analysis.world.population import extinct_step
 from hedon.analysis.world.species import Kind, by_species, kinds
 from hedon.config import Config, digest, flatten
-from hedon.config.gene import gene_of
-from hedon.config.layout import Gene
+from hedon.config.layout import Gene, layouts
 from hedon.config.problem import format_value
 from hedon.config.schema.species import ONLY, SpeciesConfig
 from hedon.record.reader import Run
@@ -90,7 +89,11 @@ class WorldRecord:
 
     def gene(self, column: str) -> Gene:
         """Gene of a column."""
-        return gene_of(self.config, f"{self.species}.{column}")
+        return self._genes[column]
+
+    @cached_property
+    def _genes(self) -> dict[str, Gene]:
+        return {gene.name: gene for gene in layouts(self.config)[self.species].genes}
 
     @property
     def weight_names(self) -> tuple[str, ...]:
