@@ -1,4 +1,4 @@
-// The panel of the chosen agent: what it sees and does, whether it learns, its genes, its life, and its kin to click.
+// The panel of the chosen agent: what it sees and does, whether it learns, its genes, its life, and links to its kin.
 import { typeColor } from "./color";
 import { by, counted, element, picture, show, styleColor, surface, table } from "./element";
 import { LearningChart } from "./learning";
@@ -8,9 +8,9 @@ import type { Source } from "./source";
 import type { Frame, Gene, Life, Species } from "./types";
 
 const SHOWN_CHILDREN = 12;
-const ROUNDED = 1e4; // rewards are sums of numbers of 7 digits
+const ROUNDED = 1e4; // rewards are sums of 7-digit numbers
 
-/** A part of the panel that is written anew only where it says something else, so that what has the focus keeps it. */
+/** A part of the panel that is rewritten only if its content changes, so that the focused element keeps the focus. */
 class Part {
   readonly host = element("section");
   private said = "";
@@ -75,7 +75,7 @@ export class AgentPanel {
     this.last = "";
   }
 
-  /** What matters first comes first. Elements are moved only where other ones are there than before. */
+  /** Puts the most important parts first. Elements are moved only if the set of parts has changed. */
   private arrange(present: boolean, source: Source, neutral: boolean): void {
     const known = source.earned(0) !== undefined;
     const key = `${present} ${known} ${neutral}`;
@@ -101,7 +101,7 @@ export class AgentPanel {
     );
   }
 
-  /** Fills the folded list of neutral genes; false where there are none. */
+  /** Fills the folded list of neutral genes; returns false if there are none. */
   private neutral(source: Source, life: Life): boolean {
     const own = source.layout.species[life.species]!.genes.filter((g) => source.layout.genes[g]!.role === "neutral");
     this.folded.firstElementChild!.textContent = `${counted(own.length, "neutral gene")}, without effect`;
@@ -114,7 +114,7 @@ export class AgentPanel {
     if (windows) this.learning.draw(windows, source.layout.window);
   }
 
-  /** What is counted over a life: its course within the life is not known, so the title says up to when. */
+  /** The totals of a life. How they grew during it is not known, so the title gives the period they cover. */
   private counts(source: Source, life: Life): Node[] {
     const rows: [string, Node | string][] = [["reward", show(life.reward)], ...rewardParts(source, life), ["children", this.children(source, life)]];
     source.layout.meals.forEach((meal, k) => rows.push([`${meal} eaten`, show(life.eaten[k])]));
@@ -162,14 +162,14 @@ export class AgentPanel {
   }
 }
 
-const unknown = (): HTMLElement => element("p", { class: "quiet", text: "Records have the reward of whole lives. A live world shows it for each window." });
+const unknown = (): HTMLElement => element("p", { class: "quiet", text: "Records contain only the reward of whole lives. A live world shows it for each window." });
 
 function whenGone(life: Life, frame: Frame | undefined): string {
   if (frame && life.birth > frame.step) return "Not yet born at this step.";
   return life.death >= 0 ? "Dead at this step." : "No position is known at this step.";
 }
 
-/** What it holds of each of its stores. */
+/** The contents of each of its stores. */
 function held(source: Source, frame: Frame, at: number): [string, string][] {
   return source.layout.species[frame.species[at]!]!.stores.map(({ name, capacity }, i) => {
     const amount = i === 0 ? frame.energy[at] : frame.held[name]?.[at];
@@ -188,13 +188,13 @@ function lifeTable(source: Source, life: Life, frame: Frame | undefined, at: num
   return table(rows);
 }
 
-/** Up to when reward, children and meals of a life are counted, whatever step is shown. */
+/** The period over which a life's reward, children and meals are counted; it does not depend on the step shown. */
 function countedUntil(source: Source, life: Life): string {
   if (life.death >= 0) return "in its whole life";
   return source.live ? `up to step ${show(source.last)}` : "up to the last record of it";
 }
 
-/** Each gene that its species has, as a bar from the middle, where it is 0. */
+/** Every gene of its species, as a bar that starts at 0 in the middle. */
 function genome(source: Source, life: Life, wanted: (gene: Gene) => boolean): HTMLElement {
   const own = source.layout.species[life.species]!.genes.filter((g) => wanted(source.layout.genes[g]!));
   const limit = Math.max(0.1, ...own.map((g) => Math.abs(life.genome[g]!)).filter(Number.isFinite));
@@ -212,7 +212,7 @@ function genome(source: Source, life: Life, wanted: (gene: Gene) => boolean): HT
   return list;
 }
 
-/** What the reward of a life is made of, as far as its meals tell. */
+/** The components of a life's reward that follow from its meals, and the rest. */
 function rewardParts(source: Source, life: Life): [string, string][] {
   const { layout } = source;
   const { meals, rest } = layout.species[life.species]!.reward;
@@ -224,7 +224,7 @@ function rewardParts(source: Source, life: Life): [string, string][] {
   return rows;
 }
 
-/** What each nose smells of each type, at most 1. */
+/** The intensity of each type at each nose, at most 1. */
 function smellsOf(source: Source, frame: Frame, at: number): HTMLElement[] {
   const { layout } = source;
   const { smells } = layout.species[frame.species[at]!]!;
@@ -234,7 +234,7 @@ function smellsOf(source: Source, frame: Frame, at: number): HTMLElement[] {
   return [element("h3", { text: "what it smells" }), table(smells.map((type, channel): [string, string] => [layout.types[type]!, text(channel)]))];
 }
 
-/** What it observes beside rays and touch, in units; only a live world knows it. */
+/** Its observations other than rays and touch, in their units; only a live world has them. */
 function observed(source: Source, species: Species): HTMLElement[] {
   const probe = source.agentProbe();
   if (!probe) return [];
@@ -245,7 +245,7 @@ function observed(source: Source, species: Species): HTMLElement[] {
   return [element("h3", { text: "what else it observes" }), table(rows)];
 }
 
-/** What its network says: how strong each motor is, and how much reward it expects. */
+/** The output of its network: the force of each motor, and the reward it expects. */
 function answer(source: Source): HTMLElement[] {
   const probe = source.agentProbe();
   if (!probe) {

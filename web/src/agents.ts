@@ -1,4 +1,4 @@
-// The panel with all living agents as a table: sorted by a click on a header, filtered by a line of text, saved as CSV.
+// The panel with a table of all living agents. Clicking a header sorts it, a line of text filters it, and it can be saved as CSV.
 import { brush } from "./brush";
 import { csvTable, save } from "./csv";
 import { by, counted, element, show, table } from "./element";
@@ -7,8 +7,8 @@ import type { Measure } from "./measure";
 import type { Source } from "./source";
 import type { Frame } from "./types";
 
-const MOST_ROWS = 200; // that are shown at once
-const DIGITS = 3; // of numbers that are not whole
+const MOST_ROWS = 200; // shown at once
+const DIGITS = 3; // of non-integers
 
 interface Row {
   id: number;
@@ -29,7 +29,7 @@ export class AgentTable {
   private rows: Row[] = [];
   private source!: Source;
   private frame: Frame | undefined;
-  private by = "id"; // the column that it is sorted by
+  private by = "id"; // the column it is sorted by
   private down = false; // whether the largest value comes first
   private key = "";
 
@@ -53,7 +53,7 @@ export class AgentTable {
     csv.id = "save-agents";
     csv.onclick = () => this.save();
     const scroll = element("div", { class: "agents" }, element("table", {}, this.head, this.body));
-    scroll.tabIndex = 0; // so that keys can scroll it
+    scroll.tabIndex = 0; // so that it can be scrolled from the keyboard
     scroll.setAttribute("role", "region");
     scroll.setAttribute("aria-label", "Table of agents");
     this.host.replaceChildren(
@@ -68,7 +68,7 @@ export class AgentTable {
     this.body.onkeydown = (event) => this.move(event);
   }
 
-  /** Goes over to another source. */
+  /** Switches to another source. */
   open(source: Source): void {
     this.source = source;
     this.columns = this.selection.measures.filter(({ column }) => column);
@@ -80,13 +80,13 @@ export class AgentTable {
     this.head.replaceChildren(element("tr", {}, ...this.columns.map((column) => this.header(column))));
   }
 
-  /** Takes the text of a filter, as a link has it. */
+  /** Sets the text of the filter, for example from a link. */
   write(text: string): void {
     this.filter.value = text;
     this.selection.write(text);
   }
 
-  /** Fills the table with the agents of a moment that are picked out; `picked` are their places in the frame. */
+  /** Fills the table with the picked agents of a frame; `picked` holds their indices in it. */
   update(frame: Frame | undefined, picked: number[], chosen: number): void {
     if (this.host.hidden || !frame) return;
     const { selection, source } = this;
@@ -123,7 +123,7 @@ export class AgentTable {
     return head;
   }
 
-  /** By the chosen column; what is not known comes last, and equal ones are in the order of their ids. */
+  /** Sorts by the chosen column. Unknown values come last, and ties are in the order of ids. */
   private sorted(rows: Row[]): Row[] {
     const c = this.columns.findIndex(({ name }) => name === this.by);
     const sign = this.down ? -1 : 1;
@@ -134,7 +134,7 @@ export class AgentTable {
     });
   }
 
-  /** Writes the rows into the elements of the last ones, so that what has the focus or is under a finger stays. */
+  /** Reuses the existing row elements, so that the one that is focused or being touched stays in place. */
   private fill(chosen: number): void {
     const { rows, columns, body } = this;
     const shown = Math.min(rows.length, MOST_ROWS);
@@ -154,7 +154,7 @@ export class AgentTable {
 
   private row(): HTMLElement {
     const choose = element("button", { class: "link" });
-    choose.tabIndex = this.body.rows.length === 0 ? 0 : -1; // the Tab key stops once, and arrows go from row to row
+    choose.tabIndex = this.body.rows.length === 0 ? 0 : -1; // the Tab key stops here once; arrow keys move between rows
     return element("tr", {}, element("td", {}, choose), ...this.columns.slice(1).map(({ words }) => element("td", { class: words ? "word" : "" })));
   }
 
@@ -170,7 +170,7 @@ export class AgentTable {
     next.focus();
   }
 
-  /** Saves all agents that are picked out, in the order of the table, with every digit. */
+  /** Saves all picked agents, in the order of the table, at full precision. */
   private save(): void {
     if (!this.frame) return;
     const text = (value: number, { words }: Measure) => words?.[value] ?? (Number.isNaN(value) ? "" : String(value));

@@ -1,4 +1,4 @@
-// The page: one source of moments, what is chosen, and what is drawn of it 60 times a second.
+// The page: one source of moments, the user's selections, and the drawing, 60 times a second.
 import { AgentPanel } from "./agent";
 import { AgentTable } from "./agents";
 import { Arena } from "./arena";
@@ -28,11 +28,11 @@ import type { Source } from "./source";
 import type { Event, Frame, LiveWorld, Setting } from "./types";
 
 const SPEEDS = [1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8, 16, 64, 256, 1000]; // steps per picture
-const PICTURES = 16; // at least, between two moments of records, until somebody chooses another speed
-const PICTURE_MS = 13; // of work for a live world between two pictures
-const HURRY_MS = 120; // of it on the way to a step that a link asks for, and at the highest speeds
-const PANEL_MS = 200; // between two looks at the panels
-const MOST_THREADS = 16; // that the engine has seats for
+const PICTURES = 16; // at least, between two recorded moments, until the user chooses another speed
+const PICTURE_MS = 13; // of work on a live world between two pictures
+const HURRY_MS = 120; // the same while catching up with the step in a link, and at the highest speeds
+const PANEL_MS = 200; // between two updates of the panels
+const MOST_THREADS = 16; // the engine has seats for no more
 const NOTHING: Link = { changes: new Map() };
 
 export class App {
@@ -48,12 +48,12 @@ export class App {
   tree: Tree | undefined;
   private plots: Plots | undefined;
   private tools: Tools | undefined;
-  private goal: { step: number; agent: number } | undefined; // where the link of a live world leads
-  private skipped = 0; // steps between the last two pictures that were not drawn
+  private goal: { step: number; agent: number } | undefined; // of the link that opened a live world
+  private skipped = 0; // steps between the last two pictures, which were not drawn
   private marks: Event[] = [];
   private panelsDue = 0;
-  private threads = 0; // of a live world, as the link asks for; 0 for as many as help
-  private owed = 0; // part of a step at speeds below 1
+  private threads = 0; // of a live world, from the link; 0 lets the worker choose
+  private owed = 0; // fractions of a step accumulated at speeds below 1
   private readonly colors = new ColorList(() => this.changed());
   private readonly legend = new Legend();
   private readonly notice = new Notice();
@@ -100,7 +100,7 @@ export class App {
     this.keepLink();
   }
 
-  /** Chooses the agent with the next id of those who live now. */
+  /** Chooses the living agent with the next higher id. */
   next(): void {
     const ids = this.frame?.id;
     if (ids && ids.length > 0) this.choose(ids.find((id) => id > this.chosen) ?? ids[0]!);
@@ -119,7 +119,7 @@ export class App {
     this.viewed();
   }
 
-  /** Keeps the view that somebody chose. */
+  /** Remembers the view that the user chose, and updates the link. */
   viewed(): void {
     remember("view", writeLink({ ...NOTHING, view: this.arena.view(this.source) }));
     this.keepLink();
@@ -130,7 +130,7 @@ export class App {
     else void by("stage").requestFullscreen?.().catch(() => this.say("This browser has no full screen"));
   }
 
-  /** A click at a place of the world: chooses who is there, or changes the world by hand. */
+  /** Handles a click at a place in the world: chooses the agent there, or edits the world. */
   click(x: number, y: number): void {
     const { scene } = this.arena;
     if (this.tools?.click(this.source, x, y, 1 / scene.zoom)) this.now = this.source.last;
@@ -145,7 +145,7 @@ export class App {
     this.keepLink();
   }
 
-  /** Frames of the records, or steps of a live world, on or back. */
+  /** Moves forward or back by frames of the records or steps of a live world. */
   step(by: number): void {
     this.play(false);
     if (this.source instanceof Live && by > 0 && this.now >= this.source.last && !this.source.over) {
@@ -161,7 +161,7 @@ export class App {
     this.seek(this.now);
   }
 
-  /** Plays or pauses; what has ended plays again from its beginning. */
+  /** Plays or pauses; a recording that has ended plays again from its beginning. */
   play(on: boolean): void {
     if (on && this.source.ended && this.now >= this.source.last) this.now = this.source.around(0).before?.step ?? this.source.first;
     if (this.playing && !on) this.say(`Paused at step ${show(Math.floor(this.now))}${this.population()}`);
@@ -181,7 +181,7 @@ export class App {
     this.tabs.open(name);
   }
 
-  /** The rays of an agent of the moment that is shown. */
+  /** The rays of agent `i` of the moment shown. */
   rays(i: number): Ray[] {
     return this.frame ? castRays(this.source, this.frame, i) : [];
   }
@@ -217,12 +217,12 @@ export class App {
     this.keepLink();
   }
 
-  /** The live worlds that are shown: one, or two side by side. */
+  /** The live worlds shown: one, or two side by side. */
   private running(): Live[] {
     return [this.source, this.twin.live].filter((each) => each instanceof Live);
   }
 
-  /** Begins the world again, and beside it the same one with a setting changed. */
+  /** Restarts the world, next to a copy of it with one setting changed. */
   private beside(first: Live, setting: Setting, value: string): void {
     const again = new Live(first.world, first.changes, first.seed, first.wanted);
     this.watch(again);
@@ -263,7 +263,7 @@ export class App {
     this.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
 
-  /** Shows at once that something else is to be seen: another color, filter, rectangle or order of the table. */
+  /** Updates the panels at once after a change of color, filter, rectangle or table order. */
   private changed(): void {
     this.panelsDue = 0;
     this.keepLink();
@@ -303,7 +303,7 @@ export class App {
       if (running.every((each) => each.over)) return this.end();
       this.owed = Math.min(this.owed + this.speed, this.speed + 1);
       if (this.owed < 1) return;
-      // Of two worlds the faster one waits for the other.
+      // The faster of two worlds waits for the other.
       for (const each of running) {
         const steps = least + Math.floor(this.owed) - each.last;
         if (steps > 0) each.advance(steps, this.speed >= 256 ? HURRY_MS : PICTURE_MS);
@@ -316,7 +316,7 @@ export class App {
     }
   }
 
-  /** Goes on to the step of a link, and chooses the agent of the link there. */
+  /** Runs to the step of a link, and then chooses the link's agent. */
   private hurry(source: Live, goal: { step: number; agent: number }): void {
     this.now = source.last;
     if (source.last < goal.step && !source.over && !source.error) return void source.advance(goal.step - source.last, HURRY_MS);
@@ -359,7 +359,7 @@ export class App {
     if (legend) this.legend.update(source, this.arena, this.colors.current, legend, this.chosen >= 0);
   }
 
-  /** Rings the agents that are picked out, and lists them. */
+  /** Rings the picked agents, and lists them. */
   private pick(): void {
     const { frame, selection, arena } = this;
     if (!selection.active) arena.picked.clear();
@@ -369,7 +369,7 @@ export class App {
     this.table.update(frame, picked, this.chosen);
   }
 
-  /** Says something to those who listen to the page. */
+  /** Announces a text to screen readers. */
   private say(text: string): void {
     by("said").textContent = text;
   }
@@ -379,7 +379,7 @@ export class App {
     const { source } = this;
     const [kind, index] = by<HTMLSelectElement>("world").value.split(" ");
     const live = source instanceof Live ? { live: source.world.source, seed: source.seed, changes: source.changes } : NOTHING;
-    // A live world that goes on, or that was changed by hand, has no step to which the link would lead.
+    // A link cannot lead to a step of a live world that is running or was edited by hand.
     const step = this.playing || !Number.isFinite(this.now) || (source instanceof Live && source.edited) ? undefined : Math.floor(this.now);
     const link: Link = { ...live, run: kind === "run" ? Number(index) : undefined, threads: this.threads || undefined, step, color: this.colors.current.name, filter: this.selection.text || undefined, view: this.arena.view(source) };
     if (this.chosen >= 0) link.agent = this.chosen;

@@ -1,4 +1,4 @@
-// Draws one moment of a world: walls, foods, agents, and what belongs to the chosen agent.
+// Draws one moment of a world: walls, foods, agents, and the marks of the chosen agent.
 import { bodyOf } from "./body";
 import { type Coloring, foodColors, pack, paint, type Painted, parse, speciesColor, typeColor, UNKNOWN } from "./color";
 import { styleColor } from "./element";
@@ -9,16 +9,16 @@ import type { Source } from "./source";
 import { Trails } from "./trails";
 import type { Frame, Layout, Place, Species } from "./types";
 
-/** Center x, center y, and the zoom as a multiple of that of the whole arena. */
+/** Center x, center y, and the zoom relative to the view of the whole arena. */
 export type View = [number, number, number];
 
-const MOST_FOLLOWED = 20; // agents with trails and rays, of the ones that are picked out
-const FAINT = 0.1; // of a smell at its source: how much is left at the rim of what is drawn of it
-const HALO = 0x10000000; // the alpha of that, in a packed color
+const MOST_FOLLOWED = 20; // picked agents that have trails and rays
+const FAINT = 0.1; // intensity of a smell at the rim of its drawn halo, relative to its source
+const HALO = 0x10000000; // the alpha of the halo, in a packed color
 
 /** The cosine of half the angle of a mouth. */
 const mouthOf = (species: Species) => Math.cos((species.mouth_degrees * Math.PI) / 180);
-/** Where the middle of a mouth is. */
+/** The direction of the middle of a mouth. */
 const middleOf = (species: Species) => (species.mouth_center_degrees * Math.PI) / 180;
 
 export class Arena {
@@ -26,16 +26,16 @@ export class Arena {
   showRays = true;
   showTrail = true;
   rings = true; // around all species but the first
-  ringColor = ""; // of the rings, by its name in the page's style; without one a species has its own
+  ringColor = ""; // name of the rings' color in the page's style; "" for the color of each species
   follow = false;
-  marked = new Set<number>(); // agents of the branch that is chosen in the tree
+  marked = new Set<number>(); // agents of the branch chosen in the tree
   picked = new Set<number>(); // agents that match the filter and the rectangle of the scatter plot
-  under: ((scene: Scene) => void) | undefined; // draws what is below everything else
-  drawMilliseconds = 0; // of the last frame, on the page's side
+  under: ((scene: Scene) => void) | undefined; // draws below everything else
+  drawMilliseconds = 0; // spent by the page on the last frame
   private colors = new Uint32Array(256);
   private readonly trails = new Trails();
   private fitted = false;
-  private moved = false; // whether somebody chose another view than the whole arena
+  private moved = false; // whether the user chose a view other than the whole arena
 
   constructor(canvas: HTMLCanvasElement) {
     this.scene = new Scene(canvas);
@@ -50,7 +50,7 @@ export class Arena {
     this.moved = false;
   }
 
-  /** Where somebody looks: the center, and the zoom as a multiple of that of the whole arena; nothing for that. */
+  /** The current view; undefined for the whole arena. */
   view(source: Source): View | undefined {
     return this.moved ? [this.scene.centerX, this.scene.centerY, this.scene.zoom / this.whole(source)] : undefined;
   }
@@ -60,7 +60,7 @@ export class Arena {
     this.fitted = this.moved = true;
   }
 
-  /** Moves the view so that a place of the world that was under one pixel of the page is under another, after a zoom. */
+  /** Zooms by `factor`, then moves the view so that the place under pixel `from` of the page ends up under `to`. */
   drag(from: Place, to: Place, factor = 1): void {
     const { scene } = this;
     const [x, y] = scene.toWorld(...from);
@@ -95,7 +95,7 @@ export class Arena {
     return legend;
   }
 
-  /** The agent under a place in the world, or -1. */
+  /** The id of the agent at a place in the world, or -1. */
   pick(source: Source, frame: Frame, x: number, y: number): number {
     let [best, found] = [Infinity, -1];
     for (let i = 0; i < frame.id.length; i++) {
@@ -141,7 +141,7 @@ export class Arena {
     return legend;
   }
 
-  /** Around each thing that somebody smells, how far it is smelled. */
+  /** Draws a halo around everything that a species smells, as far as the smell reaches. */
   private drawSmells(layout: Layout, frame: Frame, foods: number[]): void {
     const reach = layout.types.map((_, type) =>
       Math.max(0, ...layout.species.filter((each) => each.smells.includes(type)).map((each) => Math.log(1 / FAINT) / each.noses.decay)),
@@ -154,7 +154,7 @@ export class Arena {
     for (let f = 0; f < frame.foodX.length; f++) halo(layout.species.length + frame.foodKind[f]!, frame.foodX[f]!, frame.foodY[f]!, foods[frame.foodKind[f]!]!);
   }
 
-  /** Trails and rays of the chosen agent and of some that are picked out. */
+  /** Draws trails and rays of the chosen agent and of some picked agents. */
   private followed(source: Source, frame: Frame, at: number): void {
     if (at >= 0 && this.follow) [this.scene.centerX, this.scene.centerY] = [frame.x[at]!, frame.y[at]!];
     const others: number[] = [];

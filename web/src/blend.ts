@@ -1,7 +1,7 @@
-// A moment between two frames: agents that are in both move evenly, so that a replay does not jump.
+// Interpolates between two frames, so that agents move smoothly in a replay.
 import type { Frame } from "./types";
 
-/** The moment at `step`; frames that are far apart are not blended, since agents would float through walls. */
+/** The moment at `step`. Frames that are far apart are not blended, since agents would float through walls. */
 export function blend(before: Frame, after: Frame | undefined, step: number): Frame {
   if (!after || step <= before.step || after.step - before.step > 128) return before;
   const share = (step - before.step) / (after.step - before.step);

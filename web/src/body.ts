@@ -1,8 +1,8 @@
-// What an agent is: its species, with the numbers that its genes set.
+// An agent's body: the settings of its species, scaled by its genes.
 import type { Source } from "./source";
 import type { Frame, Species } from "./types";
 
-/** The species of agent `i` of a frame, as far as its genes are known with what they set. */
+/** The species of agent `i` of a frame, with the values that its genes set, if they are known. */
 export function bodyOf(source: Source, frame: Frame, i: number): Species {
   const common = source.layout.species[frame.species[i]!]!;
   const genome = common.sets.length > 0 ? source.lives.get(frame.id[i]!)?.genome : undefined;

@@ -1,11 +1,11 @@
-// The rectangle that somebody drags in the scatter plot of two genes: it picks out the agents whose points are inside.
+// The rectangle dragged in the scatter plot of two genes, which picks the agents whose points are inside.
 import { element, show, styleColor } from "./element";
 import type { Life } from "./types";
 
 const STILL = 4; // pixels that a click may move; a click removes the rectangle
-const RIM = 0.97; // of the axis: points from here on may lie beyond it, and are drawn at the rim
+const RIM = 0.97; // of the axis: points from here on, which may be beyond it, are drawn at the rim
 
-/** What the scatter plot shows: two genes of a species, both from -limit to limit. */
+/** What the scatter plot shows: two genes of a species, each from -limit to limit. */
 export interface Scatter {
   canvas: HTMLCanvasElement;
   species: number;
@@ -16,7 +16,7 @@ export interface Scatter {
 type Range = [number, number];
 
 export class Brush {
-  /** Called when other agents are picked out. */
+  /** Called when the set of picked agents changes. */
   changed = (): void => undefined;
   private area: { species: number; genes: [number, number]; x: Range; y: Range } | undefined;
   private scatter: Scatter | undefined;
@@ -27,7 +27,7 @@ export class Brush {
     return this.area !== undefined;
   }
 
-  /** The scatter plot was drawn: draws the rectangle on it, which ends with the axes or the species that it is of. */
+  /** Draws the rectangle after the scatter plot; removes it if the axes or the species have changed. */
   drawn(scatter: Scatter): void {
     this.scatter = scatter;
     if (!this.seen.has(scatter.canvas)) this.attach(scatter.canvas);
@@ -88,7 +88,7 @@ export class Brush {
     canvas.addEventListener("pointercancel", () => (this.from = undefined));
   }
 
-  /** Takes the rectangle between two pixels of the canvas. */
+  /** Sets the rectangle between two pixels of the canvas. */
   private span(from: [number, number], to: [number, number]): void {
     if (!this.scatter) return;
     const { canvas, species, genes, limit } = this.scatter;
@@ -104,5 +104,5 @@ export class Brush {
 
 const far = ([x, y]: [number, number], event: PointerEvent) => Math.hypot(event.offsetX - x, event.offsetY - y) >= STILL;
 
-/** The only scatter plot of the page has the only rectangle. */
+/** The page has one scatter plot, and so one rectangle. */
 export const brush = new Brush();

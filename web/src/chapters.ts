@@ -1,4 +1,4 @@
-// The marks of the time line by name: a list of chapters, each of which leads to its moment.
+// The marks of the time line as a list of chapters, each of which leads to its moment.
 import { by, option, show } from "./element";
 import type { Source } from "./source";
 import type { Event } from "./types";
@@ -11,11 +11,11 @@ export class Chapters {
     this.list.onchange = () => seek(this.chapters[this.list.selectedIndex]!.step);
   }
 
-  /** Lists what records have marks of, and selects the chapter of the moment; not while somebody chooses. */
+  /** Lists the marks of a recording and selects the current chapter, except while the user is choosing one. */
   update(source: Source, marks: Event[], now: number): void {
-    this.list.hidden = source.live || marks.length === 0; // a live world keeps its last moments alone
+    this.list.hidden = source.live || marks.length === 0; // a live world keeps only its last moments
     if (this.list.hidden || document.activeElement === this.list) return;
-    // A mark may stand before the first moment: the population has rows between two frames.
+    // A mark may precede the first moment, because the population has rows between two frames.
     const found = [{ step: source.first, text: "the beginning" }, ...[...marks].sort((a, b) => a.step - b.step)];
     if (JSON.stringify(found) !== JSON.stringify(this.chapters)) {
       this.chapters = found;

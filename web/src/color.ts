@@ -1,32 +1,32 @@
-// What an agent's color means, for any world: names and values come from its layout and its lives.
+// The meanings of an agent's color, for any world: names and values come from its layout and its lives.
 import { scaleOf } from "./scale";
 import type { Source } from "./source";
 import type { Frame, Layout, Life } from "./types";
 
 type Rgb = [number, number, number];
 
-// Every color here stands out from the light ground and from the dark one by 3 : 1, so each means the same on both.
-// The ramp goes from blue to amber, which the color-blind tell apart.
+// Every color here has a contrast of 3 : 1 with both the light and the dark background, so it is the same on both.
+// The ramp runs from blue to amber, which people with color blindness can distinguish.
 const RAMP: Rgb[] = [[61, 111, 216], [138, 85, 204], [192, 74, 152], [210, 73, 63], [196, 120, 0]];
 const DIVERGING: Rgb[] = [[31, 111, 224], [123, 133, 143], [200, 100, 0]];
 const DISTINCT: Rgb[] = [[0, 114, 178], [213, 94, 0], [0, 149, 108], [176, 125, 26], [181, 80, 143], [58, 134, 200], [122, 79, 163], [128, 128, 36], [163, 90, 42], [14, 143, 143]];
 
-/** The color of an agent of which the value is not known; it is drawn hollow. */
+/** The color of an agent whose value is not known; it is drawn hollow. */
 export const UNKNOWN = 0;
 
 export interface Coloring {
   name: string;
   label: string;
-  /** Value of an agent, from its life and the frame; NaN for unknown. */
+  /** The value of agent `i`, from its life and the frame; NaN if it is not known. */
   value(life: Life | undefined, frame: Frame, i: number): number;
   scale: "ramp" | "diverging" | "distinct" | "food";
-  /** Whether it is a neutral gene. */
+  /** Whether this colors by a neutral gene. */
   neutral?: boolean;
-  /** The ends of the scale, which do not depend on the moment that is shown; without it they are those of the frame. */
+  /** Fixed ends of the scale; by default they are the extremes of the frame. */
   ends?: (source: Source, frame: Frame) => [number, number];
-  /** The things that it tells apart, where they have names. */
+  /** The named categories, if it has any. */
   key?: { name: string; color: string }[];
-  /** Ends that count instead. */
+  /** Ends of the scale that take precedence. */
   low?: number;
   high?: number;
 }
@@ -47,10 +47,10 @@ export function parse(hex: string): Rgb {
 
 export const css = ([r, g, b]: Rgb): string => `rgb(${r.toFixed(0)} ${g.toFixed(0)} ${b.toFixed(0)})`;
 
-/** The color of a value of a gene, from -limit to limit. */
+/** The color of a gene's value between -limit and limit. */
 export const diverging = (value: number, limit: number): string => css(along(DIVERGING, (value / limit + 1) / 2));
 
-/** The color of a value from 0 to a limit. */
+/** The color of a value between 0 and a limit. */
 export const ramp = (value: number, limit: number): string => css(along(RAMP, value / limit));
 
 /** Everything that agents of this world can be colored by. */
@@ -60,11 +60,11 @@ export function colorings(source: Source): Coloring[] {
     const most = life ? Math.max(...life.eaten) : 0;
     return life && most > 0 ? life.eaten.indexOf(most) : NaN;
   };
-  // Counts of a life have no course in the records, and a live world knows them at its newest step.
+  // Records have only the totals of a life, and a live world has its counts at the newest step.
   const counted = source.live ? "up to the newest step" : "of the whole life";
   const key = layout.species.map(({ name, color }) => ({ name, color }));
   const species: Coloring = { name: "species", label: "species", scale: "distinct", key, value: (_, frame, i) => frame.species[i]! };
-  // Records count the meals of a life and not their order.
+  // Records count the meals of a life, but do not have their order.
   const lastMeal: Coloring = { name: "last", label: "ate last", scale: "food", value: (life) => (life && life.lastMeal >= 0 ? life.lastMeal : NaN) };
   const of = (name: string, label: string, scale: Coloring["scale"], value: Coloring["value"], measure: (life: Life) => number): Coloring => ({
     name, label, scale, value, ends: scaleOf(name, scale === "diverging", measure),
@@ -92,7 +92,7 @@ export interface Painted {
   legend: { low: number; high: number; stops: string[] };
 }
 
-/** The color of each agent of a frame, and what the ends of the scale are. */
+/** Writes the color of each agent of a frame to `out`; returns the legend with the ends of the scale. */
 export function paint(coloring: Coloring, source: Source, frame: Frame, out: Uint32Array): Painted {
   const count = frame.id.length;
   const values = Float32Array.from(frame.id, (id, i) => coloring.value(source.lives.get(id), frame, i));
@@ -114,15 +114,15 @@ export function paint(coloring: Coloring, source: Source, frame: Frame, out: Uin
   return { colors: out, legend: { low, high, stops: stops.map(css) } };
 }
 
-/** The color of one of several things that have no order. */
+/** The color of one of several unordered categories. */
 const distinctColor = (value: number): Rgb => DISTINCT[(value * 7) % DISTINCT.length]!;
 
-/** The color of a food, or that of the species that is eaten. */
+/** The color of the food or of the species that is eaten. */
 export function mealColor(layout: Layout, meal: string): string {
   return [...layout.foods, ...layout.species].find((each) => each.name === meal)?.color ?? "#888888";
 }
 
-/** The color of what senses tell apart: a species, a food, an obstacle; "" for a wall. */
+/** The color of a type that senses distinguish: a species, a food or an obstacle; "" for a wall. */
 export function typeColor(layout: Layout, type: number): string {
   const things = [...layout.species, ...layout.foods];
   return things[type]?.color ?? (type > things.length ? layout.obstacle_color : "");

@@ -1,4 +1,4 @@
-// The list of colors above the arena. Neutral genes are one entry of it, with a short list of their own.
+// The list of colorings above the arena. All neutral genes share one entry, which opens a list of their own.
 import { type Coloring, colorings } from "./color";
 import { by, option } from "./element";
 import type { Source } from "./source";
@@ -8,7 +8,7 @@ const NEUTRAL = "neutral"; // the entry for all neutral genes
 export class ColorList {
   current!: Coloring;
   private colors: Coloring[] = [];
-  private first = ""; // the color of a world that opens
+  private first = ""; // the initial coloring
   private readonly list = by<HTMLSelectElement>("color");
   private readonly neutral = by<HTMLSelectElement>("neutral");
 
@@ -20,7 +20,7 @@ export class ColorList {
     this.list.onchange = this.neutral.onchange = take;
   }
 
-  /** Offers the colors of a source. One that was chosen stays, and otherwise it is the first weight of the reward: what evolves. */
+  /** Lists the colorings of a source. Keeps the current choice if possible; the default is the first reward weight, since it evolves. */
   offer(source: Source): void {
     const before = this.current && this.current.name !== this.first ? this.current.name : "";
     this.colors = colorings(source);
@@ -32,7 +32,7 @@ export class ColorList {
     this.choose(before);
   }
 
-  /** Colors agents by what has this name, or by the first color if this world lacks it. */
+  /** Colors agents by the coloring of this name, or by the default if this world lacks it. */
   choose(name: string): void {
     const named = (wanted: string) => this.colors.find((each) => each.name === wanted);
     this.current = named(name) ?? named(this.first)!;

@@ -1,4 +1,4 @@
-// Buttons and keys: everything can also be done from the keyboard.
+// Buttons and keys. Every action is also available from the keyboard.
 import type { App } from "./app";
 import { by } from "./element";
 import { switchTheme } from "./preference";
@@ -22,7 +22,7 @@ export function bindButtons(app: App): void {
   by("show-trail").onchange = () => (app.arena.showTrail = by<HTMLInputElement>("show-trail").checked);
 }
 
-/** Whether what has the focus uses a key itself, as a list does arrows and a button the space bar. */
+/** Whether the focused element uses a key itself, as a list uses arrows and a button uses the space bar. */
 function needs(target: HTMLElement, key: string): boolean {
   if (target.closest("dialog") || /^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName)) return true;
   if (key === " " && target.closest("button, summary, a")) return true;

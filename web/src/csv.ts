@@ -1,8 +1,8 @@
-// Files for a spreadsheet, and how the browser saves files. The columns of lives are called as in the table `agents` of a run.
+// CSV files, and how the browser saves files. The columns of lives have the names used in the table `agents` of a run.
 import type { Source } from "./source";
 import type { Life } from "./types";
 
-/** One line for each life, after the names of the columns; what is missing is empty. */
+/** A header and one line for each life; missing values are empty. */
 export function csvOf(source: Source, seed: number, lives: Life[]): string {
   const { layout } = source;
   const several = layout.species.length > 1;
@@ -18,10 +18,10 @@ export function csvOf(source: Source, seed: number, lives: Life[]): string {
   return [names.join(","), ...lives.map(line)].join("\n") + "\n";
 }
 
-/** A table of texts without commas, after the names of its columns. */
+/** A header and rows; no cell may contain a comma. */
 export const csvTable = (names: string[], rows: string[][]): string => [names, ...rows].map((cells) => cells.join(",") + "\n").join("");
 
-/** Lets the browser save a text, a picture or a video as a file. */
+/** Makes the browser save a text, a picture or a video as a file. */
 export function save(name: string, content: string | Blob): void {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(typeof content === "string" ? new Blob([content], { type: "text/plain" }) : content);

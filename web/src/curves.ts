@@ -1,4 +1,4 @@
-// What a plot of numbers of the series shows: their lines, the band of drift, and as chosen a running mean and the other seeds.
+// The content of a plot of columns of the series: their lines, the drift band and, optionally, a running mean and the other seeds.
 import type uPlot from "uplot";
 import type { Band } from "./drift";
 import { show } from "./element";
@@ -10,23 +10,23 @@ import { smooth, type Values } from "./smooth";
 import type { Source } from "./source";
 
 const HEIGHT = 140;
-const TALL = 190; // of a plot of a weight
-const RAW = "4d"; // opacity of the numbers behind their running mean
-const OTHER = "b3"; // and of the lines of the other seeds
+const TALL = 190; // of a plot of a reward weight
+const RAW = "4d"; // opacity of the raw values behind their running mean
+const OTHER = "b3"; // opacity of the lines of the other seeds
 
 export interface Line extends Key {
   name: string; // in the series
   column: string; // in the table `population`
-  species: string; // "" for a number of the whole world
+  species: string; // "" for a measure of the whole world
 }
 
-/** What is drawn besides the numbers themselves. */
+/** What is drawn in addition to the values themselves. */
 export interface Choice {
   window: number; // rows of the running mean
   seeds: boolean;
 }
 
-type Drawn = (number | null | undefined)[]; // undefined where a seed has no row: its line goes on after it
+type Drawn = (number | null | undefined)[]; // undefined where a seed has no row; its line bridges the gap
 
 export class Curves implements Content {
   readonly height: number;
@@ -100,7 +100,7 @@ export class Curves implements Content {
 
   values(row: number): string {
     const { lines, table, others } = this;
-    const first = 1 + others.length * lines.length; // column of the first line of the seed that is shown
+    const first = 1 + others.length * lines.length; // column of the first line of the seed shown
     const smoothed = this.smoothed ? lines.length : 0;
     const texts = lines.map(({ label }, i) => {
       const notes: string[] = [];
@@ -115,7 +115,7 @@ export class Curves implements Content {
     return texts.join(", ") + (high != null && low != null ? `; drift ${show(low, 3)} to ${show(high, 3)}` : "");
   }
 
-  /** The numbers as the table `population` has them, whatever is drawn of them. */
+  /** The values as they are in the table `population`, whatever is drawn of them. */
   csv(): string {
     const { source, lines, others } = this;
     const named = source.layout.species.length > 1 && lines.some(({ species }) => species !== "");
@@ -151,7 +151,7 @@ export class Curves implements Content {
   }
 }
 
-/** A number of the series, row by row; null where it is not known. */
+/** A column of the series, one value per row; null where it is not known. */
 function fitted(series: Series, name: string): Values {
   const column = series.get(name);
   return series.step.map((_, i) => (Number.isFinite(column[i]) ? column[i]! : null));

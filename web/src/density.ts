@@ -1,4 +1,4 @@
-// What a plot of a weight of all the living shows: quantiles over time, and behind them where many agents are.
+// The content of a plot of a reward weight's distribution: its quantiles over time, and the density of agents behind them.
 import type uPlot from "uplot";
 import { element, show, styleColor } from "./element";
 import { PARTS, type Distributions, type Quantiles } from "./distribution";
@@ -10,10 +10,10 @@ import type { Gene, Species } from "./types";
 const SHOWN = [0.05, 0.25, 0.5, 0.75, 0.95];
 const NAMES = ["q05", "q25", "median", "q75", "q95"];
 const MEDIAN = 2;
-const MARGIN = 0.15; // of the range beyond the outer quantiles
-const MOST = 0.9; // opacity where all agents are alike
+const MARGIN = 0.15; // beyond the outer quantiles, relative to their range
+const MOST = 0.9; // maximum opacity, where all agents are alike
 const BIN = 4; // pixels of the page
-const HALF = 3; // times as many agents as if they were spread evenly, where the opacity is half of it
+const HALF = 3; // density, relative to an even spread, at which the opacity is half of the maximum
 
 export class Density implements Content {
   readonly height = 190;
@@ -23,7 +23,7 @@ export class Density implements Content {
   readonly file: string;
   private quantiles: Quantiles[] = [];
   private readonly heat = element("canvas");
-  private drawn = ""; // what the heat is of
+  private drawn = ""; // key of the state that the heat map shows
 
   constructor(
     private readonly source: Source,
@@ -87,7 +87,7 @@ export class Density implements Content {
     return "The lives of some of the living are not known.";
   }
 
-  /** Shades each moment by how many agents have a value: a split leaves a pale gap between two dark stripes. */
+  /** Shades each moment by the density of agents at a value: after a split there is a pale gap between two dark stripes. */
   under(chart: uPlot): void {
     const { left, top, width, height } = chart.bbox;
     const { x, y } = chart.scales as { x: uPlot.Scale; y: uPlot.Scale };
@@ -110,7 +110,7 @@ export class Density implements Content {
     const edge = (row: number) => Math.round(chart.valToPos((steps[Math.max(row - 1, 0)]! + steps[Math.min(row, steps.length - 1)]!) / 2, "x", true) - left);
     const bins = Math.max(Math.round(height / (BIN * devicePixelRatio)), 1);
     const tall = height / bins;
-    let from = -Infinity; // pixel up to which it is shaded; of several rows within a pixel the first one counts
+    let from = -Infinity; // pixel up to which it is shaded; the first of several rows within a pixel wins
     for (let row = 0; row < this.quantiles.length; row++) {
       const [start, end] = [Math.max(edge(row), from), edge(row + 1)];
       const limits = this.quantiles[row];
@@ -118,7 +118,7 @@ export class Density implements Content {
       from = end;
       if (!limits) continue;
       shares(limits, min, max, bins).forEach((share, bin) => {
-        const crowding = share * bins; // times as many as if all were spread evenly over the plot
+        const crowding = share * bins; // density relative to an even spread over the plot
         pen.globalAlpha = (MOST * crowding) / (crowding + HALF);
         if (crowding > 0) pen.fillRect(start, height - (bin + 1) * tall, end - start, tall);
       });
@@ -126,7 +126,7 @@ export class Density implements Content {
   }
 }
 
-/** The share of agents in each of some bins from `min` to `max`: each part of the quantiles is spread evenly between its limits. */
+/** The share of agents in each of `bins` bins from `min` to `max`, assuming an even spread between adjacent quantiles. */
 function shares(limits: Float64Array, min: number, max: number, bins: number): Float64Array {
   const counts = new Float64Array(bins);
   const at = (value: number) => ((value - min) / (max - min)) * bins;

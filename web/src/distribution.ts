@@ -1,13 +1,13 @@
-// How the genes of the living are distributed at each row of the series: from the births and deaths of all lives.
+// The distribution of genes among the living at each row of the series, computed from the births and deaths of all lives.
 import type { Lives } from "./lives";
 import { columnOf, type Series } from "./series";
 import type { Source } from "./source";
 import type { Life, Species } from "./types";
 
-export const PARTS = 40; // of equally many agents; also their limits are quantiles
+export const PARTS = 40; // with equal numbers of agents; their limits are the quantiles
 const WORK_MS = 25; // between two pictures
 
-/** The limits of the parts, ascending; undefined where not all of the living are known. */
+/** The limits of the parts, ascending; undefined if some of the living are not known. */
 export type Quantiles = Float64Array | undefined;
 
 /** A quantile of sorted values, with linear interpolation. */
@@ -17,16 +17,16 @@ function quantile(sorted: Float64Array, share: number): number {
   return sorted[below]! + (at - below) * (sorted[Math.min(below + 1, sorted.length - 1)]! - sorted[below]!);
 }
 
-/** Of one species, for some of its genes, as far as the series was gone through. */
+/** The quantiles of some genes of one species, over the rows processed so far. */
 class Course {
-  readonly quantiles: Quantiles[][]; // by gene, then by row
+  readonly quantiles: Quantiles[][]; // [gene][row]
   rows = 0;
-  readonly size: number; // lives that were known at the beginning
+  readonly size: number; // lives known at the start
   readonly rewinds: number;
   private readonly living = new Map<number, Life>();
   private births: Life[] = [];
   private deaths: Life[] = [];
-  private queued = 0; // rows that the births and deaths are for
+  private queued = 0; // rows that the queues of births and deaths cover
   private done = -1; // step
 
   constructor(
@@ -48,7 +48,7 @@ class Course {
   private queue(lives: Lives, rows: number): void {
     const { species, done } = this;
     const since = [...lives.all()].filter((life) => life.species === species && (life.birth > done || life.death > done));
-    // Last first, so that they are taken from the end.
+    // In descending order, since they are taken from the end.
     this.births = since.filter((life) => life.birth > done).sort((a, b) => b.birth - a.birth);
     this.deaths = since.filter((life) => life.death > done).sort((a, b) => b.death - a.death);
     this.queued = rows;
@@ -69,7 +69,7 @@ class Course {
   }
 }
 
-/** The distributions of a species. While new ones are made, since more lives are known, the former ones are shown. */
+/** The distributions of a species. The old ones are shown while new ones are computed from lives that have become known. */
 export class Distributions {
   private shown: Course | undefined;
   private made: Course | undefined;
@@ -82,7 +82,7 @@ export class Distributions {
     this.genes = species.genes.filter((g) => source.layout.genes[g]!.role === "reward");
   }
 
-  /** Works for a moment; returns whether anything came of it. */
+  /** Works for a moment; returns whether the distributions have changed. */
   advance(): boolean {
     const { source, species } = this;
     const { layout, lives, series } = source;

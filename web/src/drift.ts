@@ -1,23 +1,23 @@
-// Where drift alone would have the mean of a gene: neutral genes of its own law walk down the pedigree of the living.
+// The range of a gene's mean under drift only: simulates neutral genes with the same law down the pedigree of the living.
 import { columnOf, type Series } from "./series";
 import type { Lives } from "./lives";
 import type { Source } from "./source";
 import type { GeneLaw, Life, Species } from "./types";
 
-const WALKS = 400; // neutral genes of a law
+const WALKS = 400; // simulated neutral genes for each law
 const OUTER = 0.025; // share of them beyond each limit of the band
-const MOST_LIVES = 200_000; // whose genes are walked: a few seconds of work
-const ENOUGH = 8; // recorded neutral genes that make a band
-const RANGE = 1.96; // standard deviations of their means that it shows on each side
+const MOST_LIVES = 200_000; // that are simulated: a few seconds of work
+const ENOUGH = 8; // recorded neutral genes needed for a band
+const RANGE = 1.96; // half width of that band, in standard deviations of their means
 const SEED = 20240717;
 
-/** Limits at each row of the series; null where they are not known. */
+/** The limits at each row of the series; null where they are not known. */
 export interface Band {
   low: (number | null)[];
   high: (number | null)[];
 }
 
-/** Numbers from 0 to 1, the same in each page: mulberry32. */
+/** Pseudorandom numbers from 0 to 1, the same on every page load: mulberry32. */
 function generator(seed: number): () => number {
   return () => {
     seed = (seed + 0x6d2b79f5) | 0;
@@ -29,7 +29,7 @@ function generator(seed: number): () => number {
 
 const normal = (uniform: () => number): number => Math.sqrt(-2 * Math.log(1 - uniform())) * Math.cos(2 * Math.PI * uniform());
 
-/** Draws the noise of a birth, of scale 1. Student's t is Bailey's (1994). */
+/** Draws the noise of a birth, at scale 1. Student's t uses Bailey's method (1994). */
 function noise({ law, df }: GeneLaw, uniform: () => number): number {
   if (law === "normal") return normal(uniform);
   if (law === "uniform") return 2 * uniform() - 1;
@@ -37,14 +37,14 @@ function noise({ law, df }: GeneLaw, uniform: () => number): number {
   return Math.sqrt(df * ((1 - uniform()) ** (-2 / df) - 1)) * Math.cos(2 * Math.PI * uniform());
 }
 
-/** Neutral genes of one law in one species, as far as the series goes. Parents live when their children are born, so only the living are kept. */
+/** Neutral genes with one law in one species, up to the end of the series. Parents are alive when their children are born, so only the living are kept. */
 class Walks {
   readonly band: Band = { low: [], high: [] };
   private readonly genes = new Map<number, Float32Array>(); // of the living, by agent
   private readonly sums = new Float64Array(WALKS);
   private readonly uniform = generator(SEED);
   private done = -1; // step
-  private torn = false; // whether somebody's parent is not known
+  private torn = false; // whether some agent's parent is not known
   readonly size: number; // lives that were known at the beginning
   readonly rewinds: number;
 
@@ -56,7 +56,7 @@ class Walks {
     [this.size, this.rewinds] = [lives.size, lives.rewinds];
   }
 
-  /** Goes on to the end of the series; `until` is the step after which the law is another. */
+  /** Continues to the end of the series; the law changes after the step `until`. */
   advance(lives: Lives, series: Series, alive: number[], until: number): void {
     const first = this.band.low.length;
     if (first >= series.step.length) return;
@@ -104,7 +104,7 @@ function quantile(sorted: Float64Array, share: number): number {
 
 const walked = new WeakMap<Source, Map<string, Walks>>();
 
-/** The band of a gene of a species, or why there is none. */
+/** The drift band of a gene of a species, or the reason why there is none. */
 export function drift(source: Source, species: Species, gene: number): Band | string {
   const { layout, lives, series } = source;
   if (layout.founders) return "No band: the founders come from a table.";
@@ -124,7 +124,7 @@ export function drift(source: Source, species: Species, gene: number): Band | st
   return nothing ? (recorded(source, species, gene) ?? "No band: the parents of some agents are not known.") : walks.band;
 }
 
-/** The band by the recorded neutral genes, if enough of them begin and mutate as the gene does. */
+/** The band from recorded neutral genes, if enough of them have the same initial law and mutation as the gene. */
 function recorded({ layout, series }: Source, species: Species, gene: number): Band | undefined {
   const own = JSON.stringify(species.laws[gene]);
   const alike = species.genes.filter((g, i) => layout.genes[g]!.role === "neutral" && JSON.stringify(species.laws[i]) === own);

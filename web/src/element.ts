@@ -1,4 +1,4 @@
-// Elements of the page. Text stays text: nothing in here reads HTML from a string.
+// Makes and finds elements of the page. Text stays text: nothing here parses HTML from a string.
 
 type Child = Node | string;
 
@@ -15,7 +15,7 @@ export function element<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** The element of the page with this id. */
+/** The element with this id. Throws if the page has none. */
 export function by<T extends HTMLElement>(id: string): T {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page has no #${id}`);
@@ -32,15 +32,15 @@ export function table(rows: [string, Child][]): HTMLTableElement {
   return element("table", {}, body);
 }
 
-/** A number as a person reads it. */
+/** Formats a number for reading. */
 export function show(value: number | undefined, digits = 2): string {
   if (value === undefined || Number.isNaN(value)) return "–";
-  if (value === 0) return "0"; // also for -0
+  if (value === 0) return "0"; // including -0
   if (Number.isInteger(value)) return value.toLocaleString("en-US");
   return value.toLocaleString("en-US", { maximumFractionDigits: Math.abs(value) < 0.1 ? 4 : digits });
 }
 
-/** A canvas that is a picture has a name from the start: what it shows is told as soon as it is drawn. */
+/** Marks a canvas as an image and gives it an initial label, which is replaced by a description once it is drawn. */
 export function picture(canvas: HTMLCanvasElement, name: string): void {
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", name);
@@ -51,10 +51,10 @@ export function styleColor(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-/** How many of something there are: "1 agent", "2,000 agents". */
+/** A count with its noun: "1 agent", "2,000 agents". */
 export const counted = (count: number, what: string): string => `${show(count)} ${what}${count === 1 ? "" : "s"}`;
 
-/** A canvas of the size that it has on the page, empty, and measured in the page's pixels. */
+/** Clears a canvas and fits it to its size on the page; returns its context, scaled to CSS pixels. */
 export function surface(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
   const ratio = window.devicePixelRatio || 1;
   const [width, height] = [Math.max(canvas.clientWidth, 1) * ratio, Math.max(canvas.clientHeight, 1) * ratio];

@@ -1,13 +1,13 @@
-// The engine's WebAssembly module as a world that JavaScript can make, run and read. No page and no Node in here.
+// The engine's WebAssembly module as a world that JavaScript can make, run and read. Nothing here depends on a page or on Node.
 // @ts-check
 
 /** @typedef {Int8Array | Uint8Array | Int32Array | Uint32Array | Float32Array | Float64Array | BigInt64Array | BigUint64Array} Numbers */
 
-// Addresses come as signed numbers: those above 2 GB are negative until `>>> 0`.
+// Addresses are signed numbers; those above 2 GB are negative until `>>> 0`.
 
-/** What the module asks of a system: a clock, and nothing else that is used. @param {WebAssembly.Memory} memory */
+/** What the module needs from the system. Only the clock is used. @param {WebAssembly.Memory} memory */
 function system(memory) {
-  const refused = 52; // the system's number for "not there"
+  const refused = 52; // WASI's errno for "not supported"
   return new Proxy(
     {
       clock_time_get: (/** @type {number} */ _id, /** @type {bigint} */ _precision, /** @type {number} */ at) => {
@@ -23,10 +23,10 @@ function system(memory) {
   );
 }
 
-/** A problem that the engine reports in words. */
+/** An error that the engine reports with a message. */
 export class EngineError extends Error {}
 
-/** The same functions, but a trap is told in words. @param {Record<string, CallableFunction>} exports */
+/** The same functions, with traps turned into error messages. @param {Record<string, CallableFunction>} exports */
 function explained(exports) {
   /** @param {CallableFunction} call */
   const telling = (call) => (/** @type {unknown[]} */ ...given) => {
@@ -44,14 +44,14 @@ function explained(exports) {
 const PAGE = 65536; // bytes
 const FIRST_PAGES = 64; // as the module was linked
 const MOST_PAGES = 65535;
-const MOST = 4e9; // bytes of a world: what 32 bits can name, less what is needed besides
-const SPARE = 64e6; // bytes of memory besides a world and the copy that is kept of it
-const NAP_MS = 100; // that a thread sleeps before it looks whether another one was stopped
+const MOST = 4e9; // bytes of a world: the 32-bit address space, less other needs
+const SPARE = 64e6; // bytes of memory in addition to a world and its snapshot
+const NAP_MS = 100; // a thread's sleep before it checks whether another one was stopped
 const SHARED_MEMORY = [3, ...new TextEncoder().encode("env"), 6, ...new TextEncoder().encode("memory"), 2, 3];
 
 /**
- * The module of these bytes. One flag of its import says whether the memory is shared; nothing else depends on it, and
- * a page that is not isolated cannot share memory. @param {Uint8Array<ArrayBuffer>} bytes @param {boolean} shared
+ * Compiles these bytes. The module's memory import has a flag for shared memory, and nothing else depends on it. It is
+ * set here, because a page that is not isolated cannot share memory. @param {Uint8Array<ArrayBuffer>} bytes @param {boolean} shared
  */
 export async function compile(bytes, shared) {
   if (shared) return WebAssembly.compile(bytes);
@@ -61,7 +61,7 @@ export async function compile(bytes, shared) {
   return WebAssembly.compile(own);
 }
 
-/** @param {boolean} shared @param {number} bytes the most that it can grow to */
+/** @param {boolean} shared @param {number} bytes the maximum size */
 function memoryOf(shared, bytes) {
   const maximum = Math.min(Math.ceil(bytes / PAGE) + FIRST_PAGES, MOST_PAGES);
   try {
@@ -75,13 +75,13 @@ function memoryOf(shared, bytes) {
 const gigabytes = (bytes) => `${(bytes / 1e9).toFixed(1)} GB`;
 
 /**
- * What a worker needs to be a thread of the engine; it calls `serve`.
+ * What a worker needs to serve as a thread of the engine, by calling `serve`.
  * @typedef {{ module: WebAssembly.Module, memory: WebAssembly.Memory, seat: number, stack: number, locals: number }} Post
- * @typedef {(post: Post) => Promise<() => void>} Hire gives a post to a worker, waits until it is ready to serve, and
- * returns what dismisses it
+ * @typedef {(post: Post) => Promise<() => void>} Hire sends a post to a worker, waits until it is ready to serve, and
+ * returns a function that dismisses it
  */
 
-/** Serves as a thread of the engine for as long as the worker lives. @param {Post} post @param {() => void} ready */
+/** Serves as a thread of the engine until the worker ends. @param {Post} post @param {() => void} ready */
 export function serve({ module, memory, seat, stack, locals }, ready) {
   const exports = instantiate(module, memory);
   /** @type {WebAssembly.Global} */ (/** @type {unknown} */ (exports.__stack_pointer)).value = stack;
@@ -130,10 +130,10 @@ export class Engine {
   }
 
   /**
-   * An engine with the world of a text (see engine/web/input.h). Refuses a world that needs more than `limit` bytes.
+   * Makes an engine with the world of a text (see engine/web/input.h). Refuses a world that needs more than `limit` bytes.
    * @param {WebAssembly.Module} module @param {string} text
    * @param {{ shared?: boolean, threads?: number, hire?: Hire, limit?: number }} [how] more than one thread needs
-   * shared memory, and somebody to hire
+   * shared memory, and `hire`
    */
   static async make(module, text, { shared = false, threads = 1, hire, limit = MOST } = {}) {
     const planned = new Engine(module, shared).#needOf(text, threads);
@@ -156,14 +156,14 @@ export class Engine {
     return engine;
   }
 
-  /** Lets the world go on with the settings of another text; its snapshot is forgotten. @param {string} text */
+  /** Continues the world with the settings of another text; its snapshot is discarded. @param {string} text */
   change(text) {
     this.#needOf(text, this.threads);
     this.#need(this.exports.hedon_change());
     this.known.clear();
   }
 
-  /** Bytes that the world of a text needs, which `hedon_make` then makes. @param {string} text @param {number} threads */
+  /** Bytes needed by the world of a text, which `hedon_make` can then make. @param {string} text @param {number} threads */
   #needOf(text, threads) {
     const bytes = new TextEncoder().encode(text);
     const at = this.exports.hedon_text(bytes.length) >>> 0;
@@ -186,24 +186,24 @@ export class Engine {
     }
   }
 
-  /** Ends its threads; no world is left. */
+  /** Ends all threads; the world is gone. */
   close() {
     for (const dismiss of this.dismissals.splice(0)) dismiss();
   }
 
-  /** Whether multiply-adds are fused: then digests are those of AVX2 and AVX-512. */
+  /** Whether multiply-adds are fused, in which case digests match AVX2 and AVX-512. */
   get fuses() {
     return this.exports.hedon_fuses(1 + 2 ** -12) === 1;
   }
 
-  /** Steps until `steps` are done, a window must be learned, or the world is over. @param {number} steps */
+  /** Runs until `steps` are done, a window must be learned, or the world has ended. @param {number} steps */
   run(steps) {
     const done = this.exports.hedon_run(steps);
     this.#need(this.exports.hedon_fault());
     return done;
   }
 
-  /** Runs `steps` steps with all learning. @param {number} steps */
+  /** Runs `steps` steps, including all learning. @param {number} steps */
   runWhole(steps) {
     for (let left = steps; left > 0; ) {
       const done = this.run(left);
@@ -217,7 +217,7 @@ export class Engine {
     return this.exports.hedon_must_learn() === 1;
   }
 
-  /** Lets some learners learn; returns how many are left. @param {number} count */
+  /** Trains up to `count` learners; returns how many are left. @param {number} count */
   learn(count) {
     const left = this.exports.hedon_learn(count);
     if (left === 0) this.#need(this.exports.hedon_fault());
@@ -229,28 +229,28 @@ export class Engine {
     return BigInt.asUintN(64, this.exports.hedon_digest()).toString(16).padStart(16, "0");
   }
 
-  /** Adds a thing by hand: a species by its index, or a food by its index after the species.
+  /** Adds an agent or a food by hand: a species by its index, or a food by its index after all species.
    * @param {number} type @param {number} x @param {number} y */
   add(type, x, y) {
     this.#need(this.exports.hedon_add(type, x, y));
   }
 
-  /** Takes out by hand what is at a place, or at most `slack` beside it. @param {number} x @param {number} y @param {number} slack */
+  /** Removes by hand whatever is at a place, or at most `slack` away. @param {number} x @param {number} y @param {number} slack */
   remove(x, y, slack) {
     this.#need(this.exports.hedon_remove(x, y, slack));
   }
 
-  /** Whether the world has been changed by hand. */
+  /** Whether the world has been edited by hand. */
   get edited() {
     return this.exports.hedon_edited() === 1;
   }
 
-  /** Keeps the world as it is now, instead of the one kept before. */
+  /** Takes a snapshot of the world, which replaces the previous one. */
   keep() {
     this.#need(this.exports.hedon_keep());
   }
 
-  /** Makes the world as it was when it was kept. */
+  /** Restores the snapshot. */
   goBack() {
     this.#need(this.exports.hedon_return());
   }
@@ -259,7 +259,7 @@ export class Engine {
     this.exports.hedon_take_deaths();
   }
 
-  /** An array of the state, or undefined. Columns of structs are copied, others are views until the next `run`.
+  /** An array of the state, or undefined. Columns of structs are copied; others are views, valid until the next `run`.
    * @param {string} name @returns {Numbers | undefined} */
   view(name) {
     const place = this.#place(name);
@@ -295,7 +295,7 @@ export class Engine {
     return /** @type {number} */ (this.exports.hedon_food_start(kind));
   }
 
-  /** What the agent in a slot senses now, and its network's answer. @param {number} slot */
+  /** What the agent in a slot senses now, and its network's output. @param {number} slot */
   probeAgent(slot) {
     const at = this.exports.hedon_probe(slot) >>> 0;
     const { buffer } = this.memory;

@@ -1,4 +1,4 @@
-// The frames of one world of a run: loads only the parts that are shown, and keeps the last few.
+// The frames of one world of a run. Only the parts that are shown are loaded, and the last few are kept.
 import type { Column } from "./records.worker";
 import type { Frame, Layout, Part } from "./types";
 
@@ -7,7 +7,7 @@ const KEPT_PARTS = 6; // in memory
 export type Columns = Record<string, Column>;
 export const numbers = (columns: Columns, name: string): Float64Array => (columns[name] as Float64Array) ?? new Float64Array();
 
-/** A part with frames of the world: its first and last step there. */
+/** A file with frames of the world, and the first and last step it has of it. */
 interface Filmed {
   file: string;
   steps: [number, number];
@@ -21,13 +21,13 @@ interface Body {
   y: number;
   angle: number;
   energy: number;
-  held: number[]; // of each store beside energy
+  held: number[]; // of each store other than energy
 }
 
 export class Film {
   private parts: Filmed[] = [];
-  private readonly kept = new Map<string, Frame[] | "asked">(); // by file, in the order of use
-  private readonly stores: string[]; // beside energy, of all species
+  private readonly kept = new Map<string, Frame[] | "asked">(); // by file, least recently used first
+  private readonly stores: string[]; // other than energy, of all species
 
   constructor(
     private readonly layout: Layout,
@@ -37,7 +37,7 @@ export class Film {
     this.stores = [...new Set(layout.species.flatMap(({ stores }) => stores.slice(1).map(({ name }) => name)))];
   }
 
-  /** Takes the list of parts as it is now. */
+  /** Updates the list of parts. */
   update(parts: Part[]): void {
     this.parts = parts.flatMap(({ file, worlds }) => {
       const steps = worlds?.[this.world];
@@ -63,7 +63,7 @@ export class Film {
     return { before, after };
   }
 
-  /** Shows the frames after a step, in their order, until `take` returns false. Parts read for this are not kept. */
+  /** Passes the frames after a step to `take`, in order, until it returns false. Parts read for this are not kept. */
   async each(after: number, take: (frame: Frame) => boolean): Promise<void> {
     for (let at = Math.max(this.lastWith(after), 0); at < this.parts.length; at++) {
       if (this.parts[at]!.steps[1] <= after) continue;
@@ -73,7 +73,7 @@ export class Film {
     }
   }
 
-  /** The last part that has frames at or before a step, where a frame of the step is whole; -1 for none. */
+  /** The last part with frames at or before a step, in which a frame at this step is complete; -1 if there is none. */
   private lastWith(step: number): number {
     return this.parts.findLastIndex(({ steps }) => steps[0] <= step);
   }
@@ -84,7 +84,7 @@ export class Film {
     const known = this.kept.get(file);
     if (known === "asked") return undefined;
     if (known) {
-      this.kept.delete(file); // to the end: the first ones are dropped first
+      this.kept.delete(file); // and added at the end, since the first ones are dropped first
       this.kept.set(file, known);
       return known;
     }
@@ -99,7 +99,7 @@ export class Film {
     return undefined;
   }
 
-  /** The frames of a part. A step may go on in the next part, as in old runs: it is a frame of the last part that has it. */
+  /** The frames of a part. In old runs a step may continue in the next part; its frame belongs to the last part that has it. */
   private async load(at: number): Promise<Frame[]> {
     const { parts } = this;
     const [first] = parts[at]!.steps;
@@ -114,7 +114,7 @@ export class Film {
     return [...moments].map(([step, bodies]) => this.frame(step, bodies));
   }
 
-  /** Adds the bodies of this world in the rows of a part, from a step up to one that is left out, by step. */
+  /** Adds the bodies of this world from the rows of a part, by step, for the steps from `first` up to but excluding `end`. */
   private collect(columns: Columns, first: number, end: number, moments: Map<number, Body[]>): void {
     const kind = columns.kind as string[];
     const [world, step, id] = [numbers(columns, "world"), numbers(columns, "step"), numbers(columns, "id")];

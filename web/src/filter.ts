@@ -1,8 +1,8 @@
-// The language of the filter line, such as `age > 5000 and w_normal < 0`: a parser and what it makes of the text.
+// The language of the filter line, such as `age > 5000 and w_normal < 0`: its parser and the resulting predicates.
 import { show } from "./element";
 import type { Measure } from "./measure";
 
-/** Whether an agent matches, from the values of its measures; undefined if that depends on a value that is not known. */
+/** Whether an agent matches, given the values of its measures; undefined if that depends on an unknown value. */
 export type Filter = (value: (measure: Measure) => number) => boolean | undefined;
 
 type Token = { text: string; kind: "number" | "name" | "sign" };
@@ -23,7 +23,7 @@ const GRAMMAR = "Use names, numbers, <, <=, >, >=, =, !=, and, or, not and paren
 
 class FilterError extends Error {}
 
-/** Reads a filter; returns what is wrong with it if it cannot be read. */
+/** Parses a filter; returns an error message if it is invalid. */
 export function parseFilter(text: string, measures: Measure[]): Filter | string {
   try {
     return new Parser(tokens(text), measures).all();
@@ -41,7 +41,7 @@ function tokens(text: string): Token[] {
   });
 }
 
-/** How many letters have to be changed, added or left out to get from one word to another. */
+/** The number of letters to change, add or remove to get from one word to another (the edit distance). */
 function distance(a: string, b: string): number {
   let row = Array.from({ length: b.length + 1 }, (_, j) => j);
   for (let i = 1; i <= a.length; i++) {
@@ -52,13 +52,13 @@ function distance(a: string, b: string): number {
   return row[b.length]!;
 }
 
-/** The word of a list that is most like another one. */
+/** The word of a list that is closest to another one. */
 function nearest(word: string, words: string[]): string {
   const away = words.map((each) => distance(word.toLowerCase(), each.toLowerCase()));
   return words[away.indexOf(Math.min(...away))]!;
 }
 
-/** Reads a filter by recursive descent: `or` binds least, then `and`, then `not`, then comparisons. */
+/** A recursive-descent parser: `or` binds weakest, then `and`, then `not`, then comparisons. */
 class Parser {
   private at = 0;
 
@@ -84,7 +84,7 @@ class Parser {
     return this.joined("and", () => this.negated(), false);
   }
 
-  /** Filters joined by a word, of which one that gives `decisive` decides; a value that is not known matters only if none does. */
+  /** Filters joined by a word. The result is `decisive` if any of them is; otherwise it is unknown if any of them is. */
   private joined(word: string, next: () => Filter, decisive: boolean): Filter {
     let left = next();
     while (this.take(word)) {
@@ -111,7 +111,7 @@ class Parser {
     return inner;
   }
 
-  /** One comparison or a chain of them, such as `100 < age <= 500`. */
+  /** One comparison, or a chain such as `100 < age <= 500`. */
   private comparison(): Filter {
     let left = this.operand();
     let found: Filter | undefined;
@@ -166,7 +166,7 @@ class Parser {
     return new FilterError(`“${text}” is not a known name. The nearest one is “${nearest(text, [...names, ...words])}”. Columns are ${columns.join(", ")}${species}.`);
   }
 
-  /** Numbers are compared with numbers, and species with species. */
+  /** Throws unless numbers are compared with numbers, and species with species. */
   private check(a: Operand, sign: string, b: Operand): void {
     const [left, right] = [a, b].map((each) => (each.word ?? each.measure?.words) !== undefined);
     if (left !== right) {

@@ -1,12 +1,12 @@
-// A finger that moves sideways on a plot drags as a mouse does; up and down it scrolls the page, as the style says.
+// A finger moving sideways on a plot drags like a mouse. Moving up and down scrolls the page, which the style sheet allows.
 
-const SIDEWAYS = 8; // pixels from which on a touch is a drag
+const SIDEWAYS = 8; // pixels after which a touch is a drag
 
 export function dragByFinger(over: HTMLElement): void {
   let start: PointerEvent | undefined;
   let dragging = false;
   const act = (type: string, { clientX, clientY }: PointerEvent) =>
-    over.dispatchEvent(new MouseEvent(type, { clientX, clientY, bubbles: true, movementX: 1 })); // the chart ignores moves by nothing
+    over.dispatchEvent(new MouseEvent(type, { clientX, clientY, bubbles: true, movementX: 1 })); // the chart ignores moves of zero length
   const end = (event: PointerEvent) => {
     if (start && dragging) act("mouseup", event);
     start = undefined;
@@ -25,7 +25,7 @@ export function dragByFinger(over: HTMLElement): void {
   });
   over.addEventListener("pointerup", end);
   over.addEventListener("pointercancel", () => {
-    if (start && dragging) act("mousemove", start); // back to where it began: it chooses nothing
+    if (start && dragging) act("mousemove", start); // back to where it began, so that it selects nothing
     if (start) end(start);
   });
 }

@@ -1,4 +1,4 @@
-// Mouse and touch on the arena: a click, a drag, a wheel, and two fingers that move and zoom at once.
+// Mouse and touch on the arena: click, drag, wheel, and two fingers that move and zoom at once.
 import type { App } from "./app";
 import type { Place } from "./types";
 
@@ -44,7 +44,7 @@ export function bindGestures(app: App): void {
   );
 }
 
-/** The middle of the first two pointers that are down, and how far they are apart; of one, its place. */
+/** The midpoint of the first two pointers that are down and the distance between them; for one pointer, its place. */
 function span(down: Map<number, Place>): { middle: Place; width: number } {
   const [[ax, ay], b] = [...down.values()] as [Place, Place?];
   if (!b) return { middle: [ax, ay], width: 0 };

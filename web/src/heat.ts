@@ -1,4 +1,4 @@
-// A map over the arena of how often agents were in each part of it, or ate there. Nothing is counted until it is chosen.
+// A map over the arena of how often agents were, or ate, in each part of it. Nothing is counted until the map is chosen.
 import type { Arena } from "./arena";
 import { css, pack, parse } from "./color";
 import { by, counted, element, option, show, styleColor } from "./element";
@@ -8,24 +8,24 @@ import type { Source } from "./source";
 import type { Frame } from "./types";
 
 const CELLS = 40; // along the longer side of the arena
-const WITHIN = 0.98; // of the cells in which something was counted that are within the end of the scale
-const STRONGEST = 215; // alpha of a cell at the end of the scale, of 255
+const WITHIN = 0.98; // share of the nonempty cells that are within the scale
+const STRONGEST = 215; // alpha of a cell at the end of the scale, out of 255
 
 export class Heat {
-  /** How often, by cell: rows from y = 0 on. */
+  /** The count in each cell, row by row from y = 0. */
   counts = new Float64Array();
   columns = 0;
-  size = 1; // of a cell [u]
+  size = 1; // side length of a cell [u]
   kind = "";
-  moments = 0; // that were counted
+  moments = 0; // counted so far
   reading = false;
   private rows = 0;
   private source!: Source;
-  private seen = -Infinity; // the step of the last moment that was counted, or the number of meals
+  private seen = -Infinity; // the step of the last moment counted, or the number of meals counted
   private rewinds = 0;
   private most = 0; // the end of the scale
-  private turn = 0; // grows with each change of what is counted, so that late answers are dropped
-  private shown = ""; // what the legend says
+  private turn = 0; // incremented whenever counting restarts, so that late answers are dropped
+  private shown = ""; // key of the legend's content
   private readonly list = by<HTMLSelectElement>("heat");
   private readonly legend = by<HTMLDivElement>("heat-scale");
 
@@ -33,7 +33,7 @@ export class Heat {
     this.list.onchange = () => this.begin(this.list.value);
   }
 
-  /** Goes over to another source; records have no places of meals. */
+  /** Switches to another source; records do not have the places of meals. */
   open(source: Source): void {
     this.source = source;
     const meals = option("meals", source.bites ? "meals" : "meals: not in records");
@@ -42,7 +42,7 @@ export class Heat {
     this.begin(meals.disabled && this.kind === "meals" ? "" : this.kind);
   }
 
-  /** Counts what has come since the last look. */
+  /** Counts what was added since the last update. */
   update(): void {
     const { source, kind } = this;
     if (kind === "") return;
@@ -52,7 +52,7 @@ export class Heat {
       this.seen = source.bites!.total;
       return this.show();
     }
-    if (this.reading) return this.show(); // what is counted so far
+    if (this.reading) return this.show(); // the count so far
     this.reading = true;
     const { turn } = this;
     const take = (frame: Frame): boolean => {

@@ -1,4 +1,4 @@
-// The help: keys, how to make the same world elsewhere, and what rounding has to do with it.
+// The help: keys, how to reproduce the world elsewhere, and how rounding affects that.
 import { by, counted, element, show, table } from "./element";
 import { Live } from "./live";
 import { command } from "./settings";

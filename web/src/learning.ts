@@ -1,15 +1,15 @@
-// Is it learning? The reward of an agent in each window of its life, as bars, and in a sentence.
+// Whether an agent learns: its reward in each window of its life, as bars and as a sentence.
 import { element, picture, show, styleColor, surface } from "./element";
 import type { Earned } from "./windows";
 
 const HEIGHT = 96;
-const MOST = 60; // windows that are drawn: the last ones
-const LEAST = 4; // windows that a comparison needs
+const MOST = 60; // the last windows are drawn
+const LEAST = 4; // windows needed for a comparison
 
-/** The reward per step in each window, as far as the agent lived in it. */
+/** The reward per step in each window, over the part in which the agent lived. */
 const rates = (windows: Earned[]): number[] => windows.map(({ from, to, reward }) => reward / Math.max(to - from, 1));
 
-/** What the windows say: the mean of the later half beside that of the first one. */
+/** A sentence that compares the mean of the later half of the windows with the mean of the first half. */
 export function verdict(windows: Earned[], length: number): string {
   if (windows.length < LEAST) return `Fills at the end of each window of ${show(length)} steps; a trend takes ${LEAST} windows, it has lived through ${windows.length}.`;
   const all = rates(windows).map((each) => each * length);

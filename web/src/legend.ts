@@ -1,15 +1,15 @@
-// What everything in the arena means: the scale of the colors, and a sign for each thing that is drawn there.
+// The legend of the arena: the color scale, and a sign for each kind of thing drawn there.
 import type { Arena } from "./arena";
 import type { Coloring, Painted } from "./color";
 import { by, element, show } from "./element";
 import type { Source } from "./source";
 
 const SVG = "http://www.w3.org/2000/svg";
-const BODY = "#8a929b"; // of an agent of any color
+const BODY = "#8a929b"; // fill of an agent in the signs
 
 type Part = [name: string, attributes: Record<string, string | number>];
 
-/** A sign of 18 by 18 pixels; a color is one of the page's style if it begins with "--". */
+/** A sign of 18 by 18 pixels; a color that begins with "--" is a variable of the page's style. */
 function sign(...parts: Part[]): SVGSVGElement {
   const made = document.createElementNS(SVG, "svg");
   for (const [key, value] of Object.entries({ width: 18, height: 18, viewBox: "-9 -9 18 18", "aria-hidden": "true" })) made.setAttribute(key, String(value));
@@ -31,7 +31,7 @@ const square = (fill: string): Part => ["rect", { x: -6, y: -6, width: 12, heigh
 const MOUTH: Part = ["path", { d: "M-4.6 -4.6 A6.5 6.5 0 0 1 4.6 -4.6", fill: "none", stroke: "--mouth", "stroke-width": 2 }];
 const EYE: Part = ["circle", { cy: -3, r: 1.4, fill: "#0d0d0d" }];
 
-/** The signs of a world, each with what it means; those of the chosen agent where there is one. */
+/** The signs of a world with their meanings, including those of the chosen agent if there is one. */
 function signs(source: Source, arena: Arena, chosen: boolean): [SVGSVGElement, string][] {
   const { layout } = source;
   const found: [SVGSVGElement, string][] = layout.foods.map((food) => [sign(disc(4.5, food.color)), `food ${food.name}`]);

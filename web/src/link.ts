@@ -1,4 +1,4 @@
-// The link of the page: everything that leads another person to the same moment of the same world.
+// The link of the page, which leads another person to the same moment of the same world.
 import type { View } from "./arena";
 
 export interface Link {
@@ -9,7 +9,7 @@ export interface Link {
   step?: number;
   agent?: number;
   color?: string;
-  filter?: string; // of the panel Agents
+  filter?: string; // of the Agents panel
   view?: View;
   changes: Map<string, string>; // of settings, by path
 }

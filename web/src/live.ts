@@ -1,4 +1,4 @@
-// A world that the engine runs in this page, as a source of moments.
+// A world that the engine runs on this page, as a source of moments.
 import { Bites } from "./bites";
 import { counted } from "./element";
 import { fileAddress, liveWorker } from "./files";
@@ -10,9 +10,9 @@ import type { Frame, GeneLaw, Layout, Life, LiveWorld, AgentProbe, Place } from 
 import { type Earned, Windows } from "./windows";
 
 export const SAMPLE_STEPS = 256; // between two points of the plots
-const KEPT_FRAMES = 2000; // that can be looked back at
+const KEPT_FRAMES = 2000; // that the user can go back to
 
-/** The engine's text of a world with some settings changed, and another seed. */
+/** The world's text for the engine, with some settings changed and another seed. */
 export function textOf(world: LiveWorld, changes: Map<string, string>, seed: number): string {
   const engine = new Map(world.settings.flatMap(({ engine, path }) => engine.map((name) => [name, changes.get(path)] as const)));
   const line = (text: string) => {
@@ -24,7 +24,7 @@ export function textOf(world: LiveWorld, changes: Map<string, string>, seed: num
   return world.text.trimEnd().split("\n").map(line).join("\n") + "\n";
 }
 
-/** The layout, with what decides drift as the engine's text has it: settings may have been changed. */
+/** The layout with the genes' laws from the engine's text, since settings may have been changed. */
 function lawful(layout: Layout, text: string): Layout {
   const values = new Map(text.split("\n").map((line) => [line.slice(0, line.indexOf("=")), line.slice(line.indexOf("=") + 1)]));
   const law = (s: number, i: number): GeneLaw => {
@@ -43,7 +43,7 @@ export class Live implements Source {
   readonly series = new Series();
   readonly windows = new Windows();
   readonly bites = new Bites();
-  readonly acts: { step: number; path: string; value: string }[] = []; // settings that were changed on the way
+  readonly acts: { step: number; path: string; value: string }[] = []; // settings changed while the world ran
   readonly first = 0;
   readonly spacing = 1;
   readonly others = [];
@@ -60,9 +60,9 @@ export class Live implements Source {
   obstacles: Place[][] = [];
   edited = false;
   kept = -1; // step of the snapshot
-  refused = ""; // why the last edit was not done
-  onMoment: ((moment: Moment) => void) | undefined; // called with each moment as it comes
-  private due: { path: string; value: string; done: (refused: string) => void }[] = []; // changes that wait for the agents
+  refused = ""; // why the last edit was refused, or ""
+  onMoment: ((moment: Moment) => void) | undefined; // called with each new moment
+  private due: { path: string; value: string; done: (refused: string) => void }[] = []; // changes that wait until no agent is learning
   private ready = false;
   private busy = false;
   private learning = 0;
@@ -77,7 +77,7 @@ export class Live implements Source {
     readonly world: LiveWorld,
     readonly changes: Map<string, string>,
     readonly seed: number,
-    readonly wanted = 0, // threads; 0 for as many as help
+    readonly wanted = 0, // threads; 0 lets the worker choose
   ) {
     this.worker.onmessage = ({ data }: MessageEvent<Report>) => this.take(data);
     const text = textOf(world, changes, seed);
@@ -128,18 +128,18 @@ export class Live implements Source {
   }
 
   /**
-   * Lets the world run by some steps, for at most this time; does nothing while it still does so, and then returns false.
-   * What it is told besides: to note where the chosen agent goes, and what that agent does if its policy is `external`.
+   * Runs the world for some steps, but at most for this time. Returns false, and does nothing, while the previous order is running.
+   * `trace` records the path of the chosen agent; `actions` are what that agent does if its policy is `external`.
    */
   advance(steps: number, milliseconds: number, told: { trace?: boolean; actions?: Actions } = {}): boolean {
     if (!this.ready || this.busy || this.error || (this.over && steps > 0)) return false;
     this.busy = true;
-    // The digest reads the whole state: only a world that rests is asked for it.
+    // The digest reads the whole state, so it is requested only when the world is paused.
     this.send({ type: "advance", steps, milliseconds, chosen: this.chosen, digest: steps === 0, ...told });
     return true;
   }
 
-  /** Changes the world by hand, keeps it, or goes back to what was kept. */
+  /** Edits the world by hand, takes a snapshot of it, or goes back to the snapshot. */
   act(edit: Edit): void {
     if (!this.ready || this.error) return;
     this.refused = "";
@@ -147,7 +147,7 @@ export class Live implements Source {
     this.send({ type: "do", edit, chosen: this.chosen, digest: true });
   }
 
-  /** Lets the world go on with another value of a setting, as soon as no agent learns; says why it cannot, or "". */
+  /** Continues the world with another value of a setting as soon as no agent is learning. Resolves to the reason if it cannot, or to "". */
   change(path: string, value: string): Promise<string> {
     return new Promise((done) => {
       this.due.push({ path, value, done });
@@ -163,7 +163,7 @@ export class Live implements Source {
     this.act({ type: "change", text: textOf(this.world, now, this.seed) });
   }
 
-  /** Looks again without a step: for another chosen agent, or for the digest. */
+  /** Requests the moment again without a step, for another chosen agent or for the digest. */
   look(): void {
     if (this.known === "" || (this.chosen >= 0 && this.seen?.id !== this.chosen)) this.advance(0, 5);
   }
@@ -214,7 +214,7 @@ export class Live implements Source {
     this.bites.add(moment.bites);
     for (const life of moment.dead) this.lives.put(life);
     for (const life of moment.lives) this.lives.put(life);
-    if (this.frames[this.frames.length - 1]?.step === frame.step) this.frames.pop(); // it may have been changed by hand
+    if (this.frames[this.frames.length - 1]?.step === frame.step) this.frames.pop(); // it may have been edited by hand
     this.frames.push(frame);
     if (this.frames.length > KEPT_FRAMES) this.frames.shift();
     this.last = frame.step;

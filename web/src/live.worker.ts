@@ -1,10 +1,10 @@
-// Runs a world away from the page's thread, a little at a time, and answers with what is to be drawn.
+// Runs a world off the page's thread, a little at a time, and answers with the data to be drawn.
 import { compile, Engine, EngineError, type Post } from "./engine.js";
 import { LastMeals } from "./meals";
 import type { Frame, Layout, Life, AgentProbe, Place } from "./types";
 import type { WindowEnd } from "./windows";
 
-/** What a person does to a world by hand. A type is a species, or a food after all species. */
+/** An edit of a world by hand. A type is the index of a species, or of a food after all species. */
 export type Edit =
   | { type: "add"; kind: number; x: number; y: number }
   | { type: "remove"; x: number; y: number; slack: number }
@@ -12,10 +12,10 @@ export type Edit =
   | { type: "keep" }
   | { type: "back" };
 export type Order =
-  | { type: "make"; text: string; layout: Layout; threads: number; modules: [string, string] } // that fuses multiply-adds, and that does not
+  | { type: "make"; text: string; layout: Layout; threads: number; modules: [string, string] } // addresses: with fused multiply-adds, and without
   | { type: "do"; edit: Edit; chosen: number; digest: boolean }
   | { type: "advance"; steps: number; milliseconds: number; chosen: number; digest: boolean; trace?: boolean; actions?: Actions };
-/** What an agent whose policy is `external` does, before the sigmoid: of the left and of the right motor. */
+/** The actions of an agent whose policy is `external`, before the sigmoid: left motor, right motor. */
 export type Actions = [number, number];
 
 export interface Moment {
@@ -24,24 +24,24 @@ export interface Moment {
   dead: Life[];
   counts: Record<string, number>;
   agentProbe?: AgentProbe;
-  learning: number; // agents that still have to learn before the next step
+  learning: number; // agents that have yet to learn before the next step
   done: number; // steps of this order
-  trace: Float32Array; // x, y of the chosen agent after each step of this order, if it asked for them
+  trace: Float32Array; // x, y of the chosen agent after each step of this order, if requested
   over: boolean;
-  bites: Float32Array; // meals since the last moment: step, x, y, and the place among the layout's meals
-  ends: WindowEnd[]; // of the windows that ended since the last moment
-  edit?: Edit["type"]; // what was done by hand
-  digest: string; // "" unless it was asked for and no window is being learned
-  edited: boolean; // whether the world has been changed by hand
-  kept: number; // step of the snapshot, -1 for none
-  refused: string; // why the edit was not done
+  bites: Float32Array; // meals since the last moment: step, x, y, and the index among the layout's meals
+  ends: WindowEnd[]; // of the windows that have ended since the last moment
+  edit?: Edit["type"]; // the edit that was made
+  digest: string; // "" unless it was requested and no window is being learned
+  edited: boolean; // whether the world has been edited by hand
+  kept: number; // step of the snapshot; -1 if there is none
+  refused: string; // why the edit was refused, or ""
 }
 export type Report = { type: "made"; fused: boolean; bytes: number; threads: number; obstacles: Place[][] } | { type: "moment"; moment: Moment } | { type: "error"; text: string };
 
-const PIECE = 2; // learners of each thread between two looks at the clock
-const START_MS = 20_000; // that a thread may take to start
-const SHARED = self.crossOriginIsolated; // otherwise the browser shares no memory, and there is one thread
-const USUAL_THREADS = 4; // at most, so that a page leaves a large machine to others
+const PIECE = 2; // learners per thread between two looks at the clock
+const START_MS = 20_000; // time limit for starting a thread
+const SHARED = self.crossOriginIsolated; // otherwise the browser cannot share memory, and there is one thread
+const USUAL_THREADS = 4; // by default at most, so that the page does not occupy a large machine
 let engine: Engine | undefined;
 let layout: Layout | undefined;
 let meals = new LastMeals();
@@ -54,7 +54,7 @@ async function module(address: string): Promise<WebAssembly.Module | undefined> 
   return WebAssembly.validate(bytes) ? compile(bytes, SHARED) : undefined;
 }
 
-/** The module that fuses multiply-adds where this machine does so, since its digests are those of most machines. */
+/** Loads the module with fused multiply-adds if this machine fuses them, since its digests match those of most machines. */
 async function load([fusing, usual]: [string, string]): Promise<WebAssembly.Module> {
   const relaxed = await module(fusing);
   if (relaxed && new Engine(relaxed, SHARED).fuses) return relaxed;
@@ -63,7 +63,7 @@ async function load([fusing, usual]: [string, string]): Promise<WebAssembly.Modu
   return plain;
 }
 
-/** Starts a worker as a thread of the engine. */
+/** Starts a worker as a thread of the engine; resolves to a function that ends it. */
 function hire(post: Post): Promise<() => void> {
   const worker = new Worker(new URL("./member.worker.ts", import.meta.url), { type: "module" });
   return new Promise((ready, fail) => {
@@ -106,14 +106,14 @@ function obstacles(world: Engine): Place[][] {
   return Array.from({ length: places.length / 2 / (corners || 1) }, (_, o) => Array.from({ length: corners }, (_, c) => corner(o * corners + c)));
 }
 
-/** The species of a slot: each owns as many slots as it has capacity, one after the other. */
+/** The species of a slot. The slots of each species are contiguous, as many as its capacity. */
 function speciesOf(slot: number): number {
   let [species, end] = [0, layout!.species[0]!.capacity];
   while (slot >= end) end += layout!.species[++species]!.capacity;
   return species;
 }
 
-/** A genome by the layout's genes, from a row of the engine, which has those of the species. */
+/** A genome in the order of the layout's genes, from a row of the engine, which has only the genes of the species. */
 function genome(row: Float32Array, species: number): number[] {
   const out = new Array<number>(layout!.genes.length).fill(NaN);
   layout!.species[species]!.genes.forEach((gene, g) => (out[gene] = row[g]!));
@@ -176,7 +176,7 @@ function frame(world: Engine, living: Int32Array): Frame {
   };
 }
 
-/** What the living hold of each store beside energy. */
+/** The contents of each store other than energy, for all living agents. */
 function held(world: Engine, living: Int32Array): Record<string, Float32Array> {
   const { species } = layout!;
   const width = Math.max(...species.map(({ stores }) => stores.length)) - 1;
@@ -190,14 +190,14 @@ function held(world: Engine, living: Int32Array): Record<string, Float32Array> {
   return Object.fromEntries([...names].map((name) => [name, Float32Array.from(living, (slot) => of(name, slot))]));
 }
 
-/** The slot of an agent, or -1 if it does not live. */
+/** The slot of an agent, or -1 if it is not alive. */
 function slotOf(world: Engine, id: number): number {
   if (id < 0) return -1;
   const [ids, living] = [world.view("life.agent_id")!, world.view("living") as Int32Array];
   return living.subarray(0, world.number("head.living_count")).find((slot) => Number(ids[slot]) === id) ?? -1;
 }
 
-/** What each of the living has earned and eaten until now. */
+/** The reward and the meals of each living agent so far. */
 function windowEnd(world: Engine): WindowEnd {
   const living = (world.view("living") as Int32Array).slice(0, world.number("head.living_count"));
   const [id, reward] = [world.view("life.agent_id")!, world.view("life.reward")!];
@@ -210,7 +210,7 @@ function windowEnd(world: Engine): WindowEnd {
   };
 }
 
-/** Goes on with other settings. The engine may give agents other slots. */
+/** Continues with other settings. The engine may move agents to other slots. */
 function change(world: Engine, text: string): void {
   const ids = () => Array.from(world.view("life.agent_id")!, Number);
   const before = ids();
@@ -219,7 +219,7 @@ function change(world: Engine, text: string): void {
   kept = undefined;
 }
 
-/** Steps and learns until the steps are done or the time is over; returns the steps done, and where the chosen agent was. */
+/** Steps and learns until the steps are done or the time is up; returns the steps done and the path of the chosen agent. */
 function advance(world: Engine, order: Order & { type: "advance" }): { done: number; trace: Float32Array } {
   const { steps, milliseconds, chosen, actions } = order;
   const end = performance.now() + milliseconds;
@@ -247,7 +247,7 @@ function advance(world: Engine, order: Order & { type: "advance" }): { done: num
   return { done, trace: Float32Array.from(trace) };
 }
 
-/** Does it; returns why it cannot be done, or "". */
+/** Makes an edit; returns the reason if it is refused, or "". */
 function act(world: Engine, edit: Edit): string {
   try {
     if (edit.type === "add") world.add(edit.kind, edit.x, edit.y);

@@ -1,8 +1,8 @@
-// Every life that is known, with who descends from whom.
+// All known lives and their pedigree.
 import type { Life } from "./types";
 
 export class Lives {
-  rewinds = 0; // how often something was forgotten
+  rewinds = 0; // how often lives were forgotten
   private readonly known = new Map<number, Life>();
   private readonly family = new Map<number, number[]>();
   private readonly roots = new Map<number, number>();
@@ -28,7 +28,7 @@ export class Lives {
     this.known.set(life.id, life);
   }
 
-  /** Forgets what happened after a step. */
+  /** Forgets all births and deaths after a step. */
   rewind(step: number): void {
     this.rewinds++;
     const before = [...this.known.values()].filter((life) => life.birth <= step);
@@ -40,7 +40,7 @@ export class Lives {
     return this.family.get(id) ?? [];
   }
 
-  /** The founder that a life descends from, as far back as lives are known. */
+  /** The id of the founder that a life descends from, or of its earliest ancestor that has a known id. */
   founder(id: number): number {
     const path: number[] = [];
     let at = id;
@@ -59,7 +59,7 @@ export class Lives {
     return at;
   }
 
-  /** Whether two agents are parent and child, siblings, or more remote kin up to `generations` back. */
+  /** Whether two agents share an ancestor at most `generations` back, counting the agents themselves as ancestors. */
   kin(a: number, b: number, generations = 3): boolean {
     const up = this.ancestors(a, generations);
     for (const id of this.ancestors(b, generations)) if (up.has(id)) return true;

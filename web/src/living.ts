@@ -1,4 +1,4 @@
-// Of those who live at the moment that is shown: their ages, and two genes of each.
+// Plots of the agents alive at the moment shown: their ages, and two of their genes.
 import { brush } from "./brush";
 import { element, option, picture, show, styleColor, surface } from "./element";
 import { quantile } from "./scale";
@@ -6,7 +6,7 @@ import type { Source } from "./source";
 import type { Frame, Life } from "./types";
 
 const BINS = 20;
-const PART = 0.98; // of the points that lie within the axes; the few beyond are drawn at the rim
+const PART = 0.98; // share of the points that are within the axes; the few beyond are drawn at the rim
 
 export class LivingPlots {
   readonly parts: HTMLElement[];
@@ -40,7 +40,7 @@ export class LivingPlots {
     this.drawScatter(lives.filter((life) => life.species === Number(this.kind.value)));
   }
 
-  /** Offers the genes of the species: another one may lack them. */
+  /** Lists the genes of the chosen species, which species may not share. */
   private offer(): void {
     const { layout } = this.source;
     const genes = layout.species[Number(this.kind.value)]!.genes;

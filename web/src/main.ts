@@ -1,4 +1,4 @@
-// Where the page begins.
+// Entry point of the page.
 import "./style.css";
 import { App } from "./app";
 import { bindButtons, bindKeys } from "./control";
@@ -10,7 +10,7 @@ recallTheme();
 
 async function begin(): Promise<void> {
   const app = new App();
-  Object.assign(window, { hedon: app }); // for a curious person's console, and for tests
+  Object.assign(window, { hedon: app }); // for the browser's console, and for tests
   bindButtons(app);
   await app.open();
   bindKeys(app);

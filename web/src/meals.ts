@@ -1,11 +1,11 @@
-// What the agent in each slot of a live world ate last: the engine counts meals, so the count that grew tells it.
+// The last meal of the agent in each slot of a live world. The engine only counts meals, so it is the kind whose count grew.
 
 export class LastMeals {
   private counts = new Int32Array();
-  private first = (_slot: number) => -1; // what each ate last before the first look
+  private first = (_slot: number) => -1; // the last meal of a slot before the first look
   private last = new Int8Array(); // by slot, -1 for nothing yet
 
-  /** Looks at the counts after a step: rows of slots, one column for each kind of meal. Reports each kind that a slot ate. */
+  /** Compares the counts after a step (a row per slot, a column per kind of meal); calls `ate` for each kind that a slot ate. */
   note(eaten: Int32Array, kinds: number, ate?: (slot: number, kind: number) => void): void {
     if (this.counts.length !== eaten.length) {
       this.counts = eaten.slice();
@@ -14,7 +14,7 @@ export class LastMeals {
     }
     for (let i = 0; i < eaten.length; i++) {
       if (eaten[i] === this.counts[i]) continue;
-      // Counts fall only where a newborn has taken the slot.
+      // Counts fall only if a newborn has taken the slot.
       const more = eaten[i]! > this.counts[i]!;
       this.last[Math.floor(i / kinds)] = more ? i % kinds : -1;
       if (more) ate?.(Math.floor(i / kinds), i % kinds);
@@ -26,7 +26,7 @@ export class LastMeals {
     return this.last[slot] ?? -1;
   }
 
-  /** The same where agents have other slots: the ids of the agents by slot, before and after. */
+  /** The same meals after agents have moved to other slots, given the ids of the agents by slot before and after. */
   moved(before: number[], after: number[]): LastMeals {
     const made = new LastMeals();
     const last = new Map(before.map((id, slot) => [id, this.of(slot)]));

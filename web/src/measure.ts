@@ -1,4 +1,4 @@
-// What the table of agents and its filter know of an agent: its measures, by the names that a filter uses.
+// The measures of an agent for the table and its filter, by the names that a filter uses.
 import type { Source } from "./source";
 import type { Frame, Life } from "./types";
 
@@ -7,9 +7,9 @@ export interface Measure {
   meaning: string;
   /** The value of agent `i` of a frame; NaN if it is not known. */
   value(life: Life | undefined, frame: Frame, i: number): number;
-  /** The words that its numbers stand for, such as the names of species. */
+  /** The words that its values stand for, such as the names of species. */
   words?: string[];
-  /** Whether it is a column of the table; a filter can use the others too. */
+  /** Whether it is a column of the table; a filter can use all measures. */
   column: boolean;
 }
 

@@ -1,4 +1,4 @@
-// A notice over the arena: what is wrong or over, and what can be done.
+// A notice over the arena: what went wrong or has ended, and what the user can do.
 import { by, element, show } from "./element";
 import { Live } from "./live";
 import type { Source } from "./source";
@@ -7,7 +7,7 @@ export class Notice {
   private readonly host = by<HTMLDivElement>("notice");
   private shown = "";
 
-  /** Says what of a source is wrong or over, with a way on: to begin again with a seed, or to look back. */
+  /** Reports that a source has failed or ended, with buttons to begin again with a seed or to look back. */
   about(source: Source, now: number, lost: boolean, again: (live: Live, seed: number) => void, back: () => void): void {
     if (lost) this.show("The browser took the graphics away. They come back by themselves, or with the page.", { "Load the page again": () => location.reload() });
     else if (source instanceof Live && source.error) this.show(source.error, { "Begin again": () => again(source, source.seed) });
@@ -17,7 +17,7 @@ export class Notice {
     } else this.show("");
   }
 
-  /** Shows a text and buttons, by their names; an empty text for none. */
+  /** Shows a text and buttons, by their labels; an empty text hides the notice. */
   show(text: string, acts: Record<string, () => void> = {}): void {
     if (text === this.shown) return;
     this.shown = text;

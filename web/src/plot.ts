@@ -1,4 +1,4 @@
-// One plot over time: its title, the values under the cursor, its files, and how it is used by mouse, finger and keys.
+// One plot over time: its title, the values under the cursor, its files, and its use by mouse, touch and keyboard.
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { save } from "./csv";
@@ -7,35 +7,35 @@ import { dragByFinger } from "./finger";
 import { savePicture, type Key } from "./plotfile";
 
 const DRAG = 5; // pixels; less is a click
-const OUTSIDE = -10; // pixels: where a chart has a cursor that is on none
-const CLOSER = 2; // times that a key narrows the range of steps
+const OUTSIDE = -10; // pixels: the position of a cursor that is not on the chart
+const CLOSER = 2; // factor by which a key narrows the range of steps
 
-/** What a plot shows. Its lines may be others after `View.changed`: the chart is then made again. */
+/** What a plot shows. If its lines change, `Plot.remake` has to be called. */
 export interface Content {
   title: string;
   unit: string;
-  file: string; // the last part of its files' names
+  file: string; // last part of the names of its files
   height: number;
-  lines: Key[]; // those with a name; a dot of each is beside the title where there are several
-  notes(): Key[]; // what a picture explains besides
+  lines: Key[]; // those with a name; if there are several, a dot for each follows the title
+  notes(): Key[]; // further explanations in a saved picture
   series(): uPlot.Series[];
   bands(): uPlot.Band[];
   data(): uPlot.AlignedData;
   under?(chart: uPlot): void; // draws behind the lines
   yRange?: uPlot.Range.Function;
-  values(row: number): string; // under the cursor
+  values(row: number): string; // for the readout under the cursor
   csv(): string;
-  empty(): string; // what is said while there is nothing to see; "" otherwise
+  empty(): string; // message while there is nothing to see; "" otherwise
 }
 
-/** What all plots share: the range of steps, and the moment that is shown. */
+/** State shared by all plots: the range of steps, and the moment shown. */
 export interface View {
   zoom: [number, number] | undefined;
   now: number;
   setZoom(zoom: [number, number] | undefined): void;
   seek(step: number): void;
   file(name: string): string;
-  world: string; // its run and seed, for pictures
+  world: string; // its run and seed, for saved pictures
 }
 
 export class Plot {
@@ -45,8 +45,8 @@ export class Plot {
   private readonly readout = element("p", { class: "readout" });
   private readonly frame = element("div", { class: "plot" });
   private readonly empty = element("p", { class: "empty" });
-  private dragged = false; // by the press of the mouse that comes before a click
-  private former = 0; // moment before the first click of two
+  private dragged = false; // whether the mouse press before a click was a drag
+  private former = 0; // moment before the first click of a double click
   private marked = NaN;
 
   constructor(
@@ -63,7 +63,7 @@ export class Plot {
     this.remake();
   }
 
-  /** Makes the chart again, since its lines are others. */
+  /** Makes the chart again after its lines have changed. */
   remake(): void {
     const width = this.chart?.width ?? 300;
     this.chart?.destroy();
@@ -87,12 +87,12 @@ export class Plot {
     this.read();
   }
 
-  /** Shows the range of steps that was chosen for all plots. */
+  /** Shows the range of steps chosen for all plots. */
   rescale(): void {
     this.chart.setData(this.chart.data);
   }
 
-  /** Shows the values of the row under the cursor, or else of the moment that is shown. */
+  /** Shows the values of the row under the cursor or, without a cursor, of the moment shown. */
   private read(): void {
     const { chart, content, view } = this;
     const steps = chart.data[0];
@@ -101,7 +101,7 @@ export class Plot {
     const text = step === undefined ? "" : `step ${show(step)}: ${content.values(row)}`;
     if (this.readout.textContent !== text) {
       this.readout.textContent = text;
-      // A longer text wraps; a shorter one after it must not move the chart away from under the cursor.
+      // A longer text wraps. A shorter one after it must not move the chart away from under the cursor.
       this.readout.style.minHeight = `${Math.max(this.readout.offsetHeight, parseFloat(this.readout.style.minHeight) || 0)}px`;
     }
     const { over } = chart;
@@ -121,7 +121,7 @@ export class Plot {
     return {
       width: size(width),
       height: size(content.height),
-      padding: [size(10), size(32), 0, 0], // half of the last step's label is right of the plot
+      padding: [size(10), size(32), 0, 0], // half of the last step's label extends to the right of the plot
       legend: { show: false },
       cursor: {
         y: false,
@@ -142,7 +142,7 @@ export class Plot {
     };
   }
 
-  /** A press of the mouse that went far enough was a drag: it chooses a range of steps. */
+  /** Zooms to a range of steps if the mouse was dragged far enough. */
   private select(chart: uPlot): void {
     const { left, width } = chart.select;
     if (width < DRAG) return;
@@ -188,16 +188,16 @@ export class Plot {
     else if (event.key === "+" || event.key === "-") {
       const half = ((max - min) / 2) * (event.key === "+" ? 1 / CLOSER : CLOSER);
       view.setZoom([steps[at]! - half, steps[at]! + half]);
-      queueMicrotask(() => pointAt(at)); // the chart takes its new range at the end of this task
+      queueMicrotask(() => pointAt(at)); // the chart applies its new range at the end of this task
     } else return;
     event.preventDefault();
-    event.stopPropagation(); // elsewhere these keys move the world
+    event.stopPropagation(); // elsewhere these keys control the world
   }
 
   private markNow(chart: uPlot, times: number): void {
     const x = chart.valToPos(this.view.now, "x", true);
     const { left, width } = chart.bbox;
-    if (!(x >= left && x <= left + width)) return; // it would cover the labels of the axis
+    if (!(x >= left && x <= left + width)) return; // otherwise it would cover the labels of the axis
     chart.ctx.fillStyle = styleColor("--mark");
     chart.ctx.fillRect(x - times, chart.bbox.top, 2 * times, chart.bbox.height);
   }
@@ -218,7 +218,7 @@ export class Plot {
   }
 }
 
-/** Puts the cursor of all charts at a place of one; the types of `setCursor` lack that it publishes. */
+/** Puts the cursor of all charts at a place in one of them; the type of `setCursor` lacks its `publish` argument. */
 function point(chart: uPlot, left: number): void {
   const move = chart.setCursor as (to: { left: number; top: number }, fire: boolean, publish: boolean) => void;
   move({ left, top: left < 0 ? left : chart.over.clientHeight / 2 }, true, true);

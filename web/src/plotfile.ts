@@ -1,4 +1,4 @@
-// A plot as a picture: drawn again at twice the screen's size, with its title and what its colors mean.
+// A plot as a picture: redrawn at twice its size on screen, with its title and a key to its colors.
 import uPlot from "uplot";
 import { save } from "./csv";
 import { styleColor } from "./element";
@@ -7,13 +7,13 @@ const TIMES = 2;
 const PAD = 12; // pixels of the page
 const LINE = 18; // height of a line of text
 
-/** What a color means. */
+/** A color and its meaning. */
 export interface Key {
   label: string;
-  color: string; // of the page's style if it begins with "--"
+  color: string; // a variable of the page's style if it begins with "--"
 }
 
-/** The parts of a text that fit into lines of a width, and where each is. */
+/** The place of each key, wrapped into lines of a width. */
 function placed(pen: CanvasRenderingContext2D, keys: Key[], width: number): { key: Key; x: number; line: number }[] {
   let [x, line] = [0, 0];
   return keys.map((key) => {
@@ -25,7 +25,7 @@ function placed(pen: CanvasRenderingContext2D, keys: Key[], width: number): { ke
   });
 }
 
-/** The words of a title in lines of a width. */
+/** A title wrapped into lines of a width. */
 function wrapped(pen: CanvasRenderingContext2D, text: string, width: number): string[] {
   const lines = [""];
   for (const word of text.split(" ")) {
@@ -36,7 +36,7 @@ function wrapped(pen: CanvasRenderingContext2D, text: string, width: number): st
   return lines;
 }
 
-/** Draws a chart for a size that is some times as large; it is drawn a moment after it is made. */
+/** Draws a chart on a canvas of its own; a chart is drawn a moment after it is made. */
 async function drawn(options: uPlot.Options, data: uPlot.AlignedData): Promise<HTMLCanvasElement> {
   const host = document.createElement("div");
   const chart = await new Promise<uPlot>((resolve) => {
@@ -47,7 +47,7 @@ async function drawn(options: uPlot.Options, data: uPlot.AlignedData): Promise<H
   return canvas;
 }
 
-/** Saves a plot; `made` gives its options, drawn some times as large, and its numbers. */
+/** Saves a plot; `made` returns its options, enlarged by a factor, and its data. */
 export async function savePicture(name: string, title: string, keys: Key[], made: (times: number) => readonly [uPlot.Options, uPlot.AlignedData]): Promise<void> {
   const [options, data] = made(TIMES / devicePixelRatio); // the chart itself multiplies by the screen's ratio
   const chart = await drawn(options, data);

@@ -1,4 +1,4 @@
-// The plots beside the world, in step with the time line; the page draws nothing that the layout does not name.
+// The plots next to the world, synchronized with the time line. Only what the layout names is plotted.
 import { Curves, type Choice, type Line } from "./curves";
 import { Density } from "./density";
 import { Distributions } from "./distribution";
@@ -17,9 +17,9 @@ export class Plots implements View {
   now = 0;
   private plots: Plot[] = [];
   private points = -1;
-  private known = 0; // lives of a replay that the bands are of
+  private known = 0; // lives of a replay that the drift bands include
   private theme = "";
-  private seeds = 0; // other ones that are drawn
+  private seeds = 0; // other seeds that are drawn
   private otherRows = 0;
   private readonly choice: Choice;
   private readonly distributions = new Map<Species, Distributions>();
@@ -53,7 +53,7 @@ export class Plots implements View {
     const { step } = this.source.series;
     const theme = styleColor("--quiet");
     const { lives, live, loaded, others } = this.source;
-    const known = live || !loaded ? 0 : lives.size; // a replay reads lives after the series, and its bands need them
+    const known = live || !loaded ? 0 : lives.size; // a replay reads lives after the series, and the drift bands need them
     const otherRows = this.choice.seeds ? others.reduce((sum, each) => sum + each.series.step.length, 0) : 0;
     const grown = step.length !== this.points || known !== this.known || theme !== this.theme || otherRows !== this.otherRows;
     [this.points, this.known, this.theme, this.otherRows] = [step.length, known, theme, otherRows];
@@ -69,7 +69,7 @@ export class Plots implements View {
     if (frame) this.living.draw(frame);
   }
 
-  /** Shows a range of steps in all plots, or all steps again. */
+  /** Shows a range of steps in all plots; undefined for all steps. */
   setZoom(zoom: [number, number] | undefined): void {
     const steps = this.plots[0]!.chart.data[0];
     const [first, last] = [steps[0] ?? 0, steps[steps.length - 1] ?? 0];
@@ -84,12 +84,12 @@ export class Plots implements View {
     return `${this.source.title}, seed ${this.source.seed}`;
   }
 
-  /** The name of a plot's file. */
+  /** The full name of a plot's file. */
   file(name: string): string {
     return `${this.source.title}-s${this.source.seed}-${name}`;
   }
 
-  /** What is chosen for all plots at once. */
+  /** The controls that apply to all plots. */
   private tools(): HTMLElement {
     const { source, choice, whole } = this;
     const smoothing = element("select");
@@ -122,7 +122,7 @@ export class Plots implements View {
     for (const plot of this.plots) if (plot.content instanceof Curves) plot.remake();
   }
 
-  /** Two plots for each weight of the reward: its mean with the band of drift and what it says, and its distribution. */
+  /** Adds two plots for each reward weight: its mean with the drift band and a verdict, and its distribution. */
   private addWeights(species: Species): void {
     const { layout, series } = this.source;
     const owner = layout.species.length > 1 ? `${species.name}: ` : "";

@@ -1,5 +1,5 @@
-// What the page remembers of a person: the theme and the view. `hedon view` has a port of its own each time, and only
-// cookies are the same on all of them.
+// The preferences that the page remembers: theme and view. `hedon view` uses a different port each time, and only
+// cookies are shared by all ports.
 
 const DAYS = 365;
 
@@ -12,7 +12,7 @@ export function recall(name: string): string | undefined {
   return found && decodeURIComponent(found.slice(found.indexOf("=") + 1));
 }
 
-/** Shows the page as it was left: dark, light, or as the system says. */
+/** Restores the last theme: dark, light, or the system's. */
 export function recallTheme(): void {
   const theme = recall("theme");
   if (theme === "dark" || theme === "light") document.documentElement.dataset.theme = theme;

@@ -1,4 +1,4 @@
-// The rays of one agent, from positions alone: what they hit in a moment that was recorded.
+// What the rays of an agent hit at a recorded moment, computed from positions.
 import { bodyOf } from "./body";
 import type { Source } from "./source";
 import type { Frame } from "./types";
@@ -8,8 +8,8 @@ export interface Ray {
   y0: number;
   x1: number;
   y1: number;
-  type: number; // index into the layout's types; -1 for nothing
-  share: number; // of the ray's length before the hit
+  type: number; // index into the layout's types; -1 if it hits nothing
+  share: number; // distance of the hit, relative to the ray's length
 }
 
 /** Distance along a ray from (ox, oy) in direction (dx, dy) to a disc, or Infinity. */
@@ -33,7 +33,7 @@ function toWall(ox: number, oy: number, dx: number, dy: number, [ax, ay, bx, by]
   return along >= 0 && share >= 0 && share <= 1 ? along : Infinity;
 }
 
-/** The rays of agent `i` of a frame, from the right to the left. Heading 0 is up, positive is counter-clockwise. */
+/** Casts the rays of agent `i` of a frame, from right to left. Heading 0 is up; positive is counterclockwise. */
 export function castRays(source: Source, frame: Frame, i: number): Ray[] {
   const { layout, obstacles } = source;
   const own = bodyOf(source, frame, i);
@@ -41,7 +41,7 @@ export function castRays(source: Source, frame: Frame, i: number): Ray[] {
   const body = own.radius;
   const [x, y] = [frame.x[i]!, frame.y[i]!];
   const foodType = layout.species.length;
-  const wall = foodType + layout.foods.length; // and after it obstacles
+  const wall = foodType + layout.foods.length; // obstacles follow it
   const sides = obstacles.flatMap((corners) => corners.map((corner, c) => [...corner, ...corners[(c + 1) % corners.length]!]));
   const reach = body + length;
   const rays: Ray[] = [];

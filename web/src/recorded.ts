@@ -1,8 +1,8 @@
-// The settings of a recorded run, read-only: first those that differ from its preset, then all of them.
+// The read-only settings of a recorded run: first those that differ from its preset, then all of them.
 import { element } from "./element";
 import type { RunIndex } from "./types";
 
-/** The elements of the settings panel for a recorded run. */
+/** Makes the elements of the settings panel for a recorded run. */
 export function recordedSettings({ base, changed, all }: RunIndex["settings"]): HTMLElement[] {
   const heading = element("h2", { text: "Settings", class: "unseen" });
   const about = changed.length > 0 ? `This run differs from ${base} in:` : `This run has the settings of ${base}.`;

@@ -1,4 +1,4 @@
-// Reads Parquet away from the page's thread. Answers each request by typed arrays, or by what went wrong.
+// Reads Parquet files off the page's thread. Answers each request with typed arrays or an error message.
 import { decompress } from "fzstd";
 import { parquetRead } from "hyparquet";
 
@@ -16,7 +16,7 @@ export interface Answer {
 
 const compressors = { ZSTD: (input: Uint8Array, size: number) => decompress(input, new Uint8Array(size)) };
 
-/** Copies what a chunk of a column holds; a missing number becomes NaN. */
+/** Copies a chunk of a column; a missing number becomes NaN. */
 function copy(from: ArrayLike<unknown>, to: Float64Array | string[], at: number): void {
   if (to instanceof Float64Array) {
     for (let i = 0; i < from.length; i++) {

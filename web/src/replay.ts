@@ -1,4 +1,4 @@
-// A run's records as a source of moments: loads only the parts of the frames that are shown, and follows a run.
+// A run's records as a source of moments. Loads only the frames that are shown, and follows a run in progress.
 import { show } from "./element";
 import { Film, numbers, type Columns } from "./film";
 import { Lives } from "./lives";
@@ -8,7 +8,7 @@ import type { Series } from "./series";
 import type { Source } from "./source";
 import type { Frame, Layout, Place, RunIndex } from "./types";
 
-const FOLLOW_MS = 2000; // between two looks at a run that goes on
+const FOLLOW_MS = 2000; // between two looks at a run in progress
 
 export class Replay implements Source {
   readonly live = false;
@@ -18,14 +18,14 @@ export class Replay implements Source {
   readonly lives = new Lives();
   readonly series: Series;
   readonly layout: Layout;
-  others: Population[] = []; // of the run's other seeds, once somebody asks for them
+  others: Population[] = []; // of the run's other seeds, once requested
   private readonly worker = new Worker(new URL("./records.worker.ts", import.meta.url), { type: "module" });
   private readonly waiting = new Map<number, (answer: Answer) => void>();
-  private readonly read = new Map<string, number>(); // bytes of the tables' parts that were read
+  private readonly read = new Map<string, number>(); // bytes already read, by part of a table
   private readonly film: Film;
   private readonly population: Population;
   private othersWanted = false;
-  private reading = Promise.resolve(); // tables are read one after the other: rows are added in their order
+  private reading = Promise.resolve(); // tables are read one after another, so that rows are added in order
   private key = 0;
   private trouble = "";
 
@@ -87,7 +87,7 @@ export class Replay implements Source {
   }
 
   earned(): undefined {
-    return undefined; // records have the reward of whole lives
+    return undefined; // records have only the reward of whole lives
   }
 
   status(): string {
@@ -127,7 +127,7 @@ export class Replay implements Source {
     return answer.columns;
   }
 
-  /** Reads the population of the run's other seeds; from then on they grow as this one does. */
+  /** Reads the populations of the run's other seeds, which are updated from then on. */
   readOthers(): void {
     if (this.othersWanted) return;
     this.othersWanted = true;
@@ -171,7 +171,7 @@ export class Replay implements Source {
       if (world[row] !== this.world) continue;
       const death = orNone(of("death_step")[row]);
       const id = of("agent_id")[row]!;
-      if (death < 0 && (this.lives.get(id)?.death ?? -1) >= 0) continue; // an older list of the living
+      if (death < 0 && (this.lives.get(id)?.death ?? -1) >= 0) continue; // the list of the living is older
       this.lives.put({
         id,
         parent: orNone(of("parent_id")[row]),

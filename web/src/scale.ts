@@ -1,22 +1,22 @@
-// The ends of the scale of a color: of all that is known of a world, so that they stay as they are while time goes on.
+// The ends of a color scale, from all known data of a world, so that they stay the same over time.
 import { columnOf } from "./series";
 import type { Source } from "./source";
 import type { Frame, Life } from "./types";
 
-const SHARE = 0.95; // of the lives that lie within the ends: the few beyond have the color of an end
-const SAMPLE = 2000; // lives at most that are looked at
-const STEPS = 64; // of a live world between two looks
+const SHARE = 0.95; // share of the lives that are within the ends; the few beyond have the color of an end
+const SAMPLE = 2000; // maximum number of lives examined
+const STEPS = 64; // of a live world between two updates
 const ABOVE_MEAN = 2.5;
 const ROUND = [1, 1.5, 2, 3, 4, 5, 6, 8, 10];
 
-/** The next number that is easy to read, from a value up. */
+/** The smallest easily read number that is not below a value. */
 export function roundUp(value: number): number {
   if (!(value > 0)) return 0;
   const size = 10 ** Math.floor(Math.log10(value));
   return size * (ROUND.find((each) => each * size >= value * (1 - 1e-9)) ?? 10);
 }
 
-/** The value below which a share of some numbers lie; NaN for none. */
+/** The quantile of some values at a share; NaN if there are none. */
 export function quantile(values: number[], share: number): number {
   const sorted = values.filter(Number.isFinite).sort((a, b) => a - b);
   return sorted[Math.min(Math.floor(share * sorted.length), sorted.length - 1)] ?? NaN;
@@ -29,7 +29,7 @@ function ofLives(source: Source, measure: (life: Life) => number): number {
   return quantile(values, SHARE);
 }
 
-/** Some times the highest mean that there was, of all species together, or is, where a world has just begun: an agent that has more is rare. */
+/** A multiple of the highest mean so far over all species, or of the current mean if the world has just begun. Few agents have more. */
 function ofEnergy(source: Source, frame: Frame): number {
   const { layout, series } = source;
   const columns = layout.species.map((each) => ["energy_mean", "alive"].map((name) => series.get(columnOf(layout, each, name))) as [number[], number[]]);
@@ -42,7 +42,7 @@ function ofEnergy(source: Source, frame: Frame): number {
   return Math.min(roundUp(ABOVE_MEAN * highest), layout.energy_capacity);
 }
 
-/** What gives the ends of a scale from 0, or around 0, for a measure of lives; without a measure, for energy. */
+/** Makes a function that gives the ends of a scale from 0, or around 0, for a measure of lives; without a measure, for energy. */
 export function scaleOf(name: string, around = false, measure?: (life: Life) => number): (source: Source, frame: Frame) => [number, number] {
   const least = name === "reward" || around ? 1e-3 : 1;
   let [seen, end] = ["", 0];
@@ -51,7 +51,7 @@ export function scaleOf(name: string, around = false, measure?: (life: Life) => 
     const key = `${lives.size} ${series.step.length} ${source.live ? Math.floor(source.last / STEPS) : ""}`;
     if (key !== seen) {
       const fresh = measure ? roundUp(ofLives(source, measure)) : ofEnergy(source, frame);
-      end = Math.max(fresh, least, source.live ? end : 0); // a world that goes on only widens its scale
+      end = Math.max(fresh, least, source.live ? end : 0); // the scale of a running world only widens
       seen = key;
     }
     return [around ? -end : 0, end];

@@ -1,4 +1,4 @@
-// Draws discs, lines and polygons by WebGL2: one call for all of a sort, and none where the picture is the last one.
+// Draws discs, lines and polygons with WebGL2: one call for all shapes of a kind, and none if the picture has not changed.
 
 const DISC_VERTEX = `#version 300 es
 layout(location=0) in vec2 corner;
@@ -51,18 +51,18 @@ in vec4 tint; out vec4 color;
 void main() { color = vec4(tint.rgb * tint.a, tint.a); }`;
 
 const DISC_WORDS = 8; // x, y, radius, angle, color, mouth, ring, middle of the mouth
-const LINE_WORDS = 3; // x, y, color; corners of triangles too
+const LINE_WORDS = 3; // x, y, color; also for the corners of triangles
 
-/** Things of one sort, in one buffer that only grows. */
+/** Shapes of one kind, in a buffer that only grows. */
 class Batch {
   floats = new Float32Array(1024);
   words = new Uint32Array(this.floats.buffer);
   used = 0;
-  private shown = new Uint32Array(0); // the words of the last picture
+  private shown = new Uint32Array(0); // words of the last picture
 
   constructor(readonly width: number) {}
 
-  /** Index of the first word of a new thing. */
+  /** Adds a shape; returns the index of its first word. */
   next(): number {
     if (this.used + this.width > this.floats.length) {
       const larger = new Float32Array(this.floats.length * 2);
@@ -78,7 +78,7 @@ class Batch {
     return this.used / this.width;
   }
 
-  /** Whether its things are others than at the last call. */
+  /** Whether the shapes differ from those at the last call. */
   changed(): boolean {
     const { words, used, shown } = this;
     let at = shown.length === used ? 0 : -1;
@@ -93,7 +93,7 @@ export class Scene {
   centerX = 0;
   centerY = 0;
   zoom = 1; // pixels of the canvas per unit
-  enlarged = 1; // times as many pixels as the screen needs
+  enlarged = 1; // factor by which the canvas exceeds the pixels of the screen
   private readonly gl: WebGL2RenderingContext;
   private readonly discs = new Batch(DISC_WORDS);
   private readonly lines = new Batch(LINE_WORDS);
@@ -104,8 +104,8 @@ export class Scene {
   private lineArray!: WebGLVertexArrayObject;
   private discBuffer!: WebGLBuffer;
   private lineBuffer!: WebGLBuffer;
-  lost = false; // whether the browser took what draws away, as it may at any time
-  private shown = ""; // how the last picture was looked at
+  lost = false; // whether the browser has taken away the WebGL context, as it may at any time
+  private shown = ""; // key of the last picture's view
 
   constructor(readonly canvas: HTMLCanvasElement) {
     const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
@@ -113,7 +113,7 @@ export class Scene {
     this.gl = gl;
     this.build();
     canvas.addEventListener("webglcontextlost", (event) => {
-      event.preventDefault(); // else it is never given back
+      event.preventDefault(); // otherwise the context is never restored
       this.lost = true;
     });
     canvas.addEventListener("webglcontextrestored", () => this.build());
@@ -151,14 +151,14 @@ export class Scene {
     this.corner(this.lines, x1, y1, color);
   }
 
-  /** A convex polygon. */
+  /** Adds a convex polygon. */
   polygon(corners: [number, number][], color: number): void {
     for (let i = 2; i < corners.length; i++) {
       for (const [x, y] of [corners[0]!, corners[i - 1]!, corners[i]!]) this.corner(this.triangles, x, y, color);
     }
   }
 
-  /** Draws everything since `begin`, on a background of this color (each part from 0 to 1). */
+  /** Draws everything added since `begin`, on a background color with components from 0 to 1. */
   end(background: [number, number, number]): void {
     const { gl, canvas } = this;
     if (this.lost) return;
@@ -188,7 +188,7 @@ export class Scene {
     return [this.centerX + dx / this.zoom, this.centerY - dy / this.zoom];
   }
 
-  /** Pixels of the page, relative to the canvas, of a place in the world. */
+  /** The position of a place in the world, in pixels of the page relative to the canvas. */
   toPage(x: number, y: number): [number, number] {
     const box = this.canvas.getBoundingClientRect();
     const scale = box.width / this.canvas.width;
@@ -197,7 +197,7 @@ export class Scene {
     return [box.left + px, box.top + py];
   }
 
-  /** Fits the canvas to its place on the page; true if its size changed. */
+  /** Fits the canvas to its size on the page; returns whether its size has changed. */
   resize(): boolean {
     const ratio = this.enlarged * Math.min(window.devicePixelRatio || 1, 2);
     const [width, height] = [Math.round(this.canvas.clientWidth * ratio), Math.round(this.canvas.clientHeight * ratio)];

@@ -1,4 +1,4 @@
-// Which of the living are picked out: they match the filter and are inside the rectangle of the scatter plot, if there is one.
+// The picked agents: those living agents that match the filter and are inside the rectangle of the scatter plot, if any.
 import { brush } from "./brush";
 import { type Filter, parseFilter } from "./filter";
 import { type Measure, measures } from "./measure";
@@ -16,7 +16,7 @@ export class Selection {
     brush.changed = changed;
   }
 
-  /** Goes over to another source: its agents may have other measures. */
+  /** Switches to another source, whose agents may have other measures. */
   open(source: Source): void {
     this.source = source;
     this.measures = measures(source);
@@ -28,7 +28,7 @@ export class Selection {
     return this.filter !== undefined || brush.active;
   }
 
-  /** Takes the text of the filter; an empty one and one that is wrong match everybody. */
+  /** Sets the text of the filter; an empty or invalid filter matches all agents. */
   write(text: string): void {
     this.text = text;
     const filter = text.trim() === "" ? undefined : parseFilter(text, this.measures);
@@ -36,7 +36,7 @@ export class Selection {
     this.filter = typeof filter === "string" ? undefined : filter;
   }
 
-  /** The places in a frame of the agents that are picked out: all of them if nothing is. */
+  /** The indices of the picked agents in a frame: all of them if nothing is selected. */
   of(frame: Frame): number[] {
     const all = Array.from(frame.id, (_, i) => i);
     if (!this.active) return all;

@@ -1,7 +1,7 @@
-// Numbers of a world over time, column by column, in the order of steps.
+// Measures of a world over time, as columns, in the order of steps.
 import type { Layout, Species } from "./types";
 
-/** The column of a number of one species; the columns of a world's only species are those of the world. */
+/** The name of a species' column; the only species of a world uses the columns of the world. */
 export function columnOf(layout: Layout, species: Species, name: string): string {
   return layout.species.length > 1 ? `${species.name}.${name}` : name;
 }
@@ -10,7 +10,7 @@ export class Series {
   readonly step: number[] = [];
   private readonly columns = new Map<string, number[]>();
 
-  /** Adds a row, unless its step is not after the last one. */
+  /** Adds a row if its step is after the last one. */
   add(step: number, row: Record<string, number>): void {
     if (this.step.length > 0 && step <= this.step[this.step.length - 1]!) return;
     for (const [name, value] of Object.entries(row)) {

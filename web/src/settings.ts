@@ -1,9 +1,9 @@
-// The settings of a live world: each with its meaning, unit and range, refused in the same words as by the command.
+// The settings of a live world, each with its meaning, unit and range. Refusals have the same wording as on the command line.
 import { by, element, option, show } from "./element";
 import type { Live } from "./live";
 import type { LiveWorld, Setting } from "./types";
 
-/** What is wrong with a value, as `hedon run --set` says it; "" if nothing is. */
+/** The error message for a value, worded as by `hedon run --set`; "" if it is valid. */
 export function refusal(setting: Setting, text: string): string {
   const shown = setting.choices.length > 0 ? JSON.stringify(text) : text;
   const wrong = `${setting.path} = ${shown}: must be ${setting.allowed}`;
@@ -17,7 +17,7 @@ export function refusal(setting: Setting, text: string): string {
   return inside ? "" : wrong;
 }
 
-/** The command that runs the same world, and gives the same digest; changes on the way are not in it. */
+/** The command that runs the same world with the same digest; it omits changes made while the world ran. */
 export function command(world: LiveWorld, changes: Map<string, string>, seed: number, steps: number): string {
   const words = ["hedon run", world.source];
   if (world.fidelity !== "corrected") words.push(`--fidelity ${world.fidelity}`);
@@ -36,7 +36,7 @@ export function configFile(world: LiveWorld, changes: Map<string, string>): stri
   return lines.join("\n") + "\n";
 }
 
-/** A whole config, which has each setting on a line of its own below the name of its table, with some values changed. */
+/** A complete config with some values changed; each setting has a line of its own below the name of its table. */
 function changedLines(toml: string, changes: Map<string, string>, written: (path: string, value: string) => string): string {
   let table = "";
   const line = (text: string): string => {
@@ -57,7 +57,7 @@ function changedLines(toml: string, changes: Map<string, string>, written: (path
   return toml.split("\n").map(line).join("\n");
 }
 
-const PAUSE_MS = 400; // after the last change of a slider, before the world takes it
+const PAUSE_MS = 400; // from the last move of a slider until the world takes its value
 
 export class Settings {
   private readonly changes = new Map<string, string>();
@@ -140,7 +140,7 @@ export class Settings {
     this.restart.disabled = this.wrong.size > 0;
   }
 
-  /** Lets the world go on with the value, a moment after the last change of it, or says that it waits for a new start. */
+  /** Continues the world with the value, shortly after its last change, or shows that the value requires a restart. */
   private act(setting: Setting, text: string, row: HTMLElement): void {
     const when = row.querySelector(".when")!;
     clearTimeout(this.due.get(setting.path));
@@ -179,7 +179,7 @@ function filter(list: HTMLElement, text: string): void {
   }
 }
 
-/** A slider around the value that the world has, from a tenth to ten times of it, within the allowed range. */
+/** A slider from a tenth to ten times the world's value, within the allowed range. */
 function range(setting: Setting): HTMLInputElement | undefined {
   if (typeof setting.value !== "number" || setting.value <= 0) return undefined;
   return Object.assign(element("input", { class: "slider" }), { type: "range", min: "-1", max: "1", step: "0.02" });

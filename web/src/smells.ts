@@ -1,9 +1,9 @@
-// What the noses of one agent smell, from positions alone.
+// What the noses of an agent smell, computed from positions.
 import { bodyOf } from "./body";
 import type { Source } from "./source";
 import type { Frame, Place } from "./types";
 
-/** Where the noses of agent `i` of a frame are: one ahead, or two, the right one first. */
+/** The positions of the noses of agent `i` of a frame: one ahead, or two, with the right one first. */
 export function noses(source: Source, frame: Frame, i: number): Place[] {
   const own = bodyOf(source, frame, i);
   const turns = own.noses.count === 1 ? [0] : [-own.noses.degrees, own.noses.degrees];
@@ -13,7 +13,7 @@ export function noses(source: Source, frame: Frame, i: number): Place[] {
   });
 }
 
-/** What each nose of agent `i` smells of each of its channels: what all sources add, at most 1. */
+/** The intensity at each nose of agent `i` in each of its channels: the sum over all sources, at most 1. */
 export function smell(source: Source, frame: Frame, i: number): number[][] {
   const { layout } = source;
   const own = bodyOf(source, frame, i);

@@ -1,10 +1,10 @@
 // A running mean over the rows of a plot.
 
-export const WINDOWS = [1, 5, 20, 100]; // rows; 1 leaves the numbers as they are
+export const WINDOWS = [1, 5, 20, 100]; // rows; 1 leaves the values as they are
 
 export type Values = (number | null)[];
 
-/** The mean of `window` rows around each row, of as many as there are near both ends; null stays null. */
+/** The mean of `window` rows around each row, or of fewer near both ends; null stays null. */
 export function smooth(values: Values, window: number): Values {
   if (window === 1) return values;
   const sums = new Float64Array(values.length + 1);

@@ -1,4 +1,4 @@
-// A row of tabs and their panels, as ARIA has them: arrows go from tab to tab, and the Tab key goes on to the panel.
+// A row of tabs and their panels, following ARIA: arrow keys move between tabs, and the Tab key moves on to the panel.
 import { by } from "./element";
 
 export class Tabs {
@@ -12,7 +12,7 @@ export class Tabs {
       const panel = by(name);
       panel.setAttribute("role", "tabpanel");
       panel.setAttribute("aria-labelledby", tab.id);
-      panel.tabIndex = 0; // it scrolls, also by keys
+      panel.tabIndex = 0; // so that it can be scrolled from the keyboard
       tab.onclick = () => this.open(name);
       tab.addEventListener("keydown", (event) => {
         const to = { ArrowLeft: i - 1, ArrowRight: i + 1, Home: 0, End: panels.length - 1 }[event.key];

@@ -1,4 +1,4 @@
-// The time line: population over time, births and deaths, events, and the place of the moment that is shown.
+// The time line: population over time, births and deaths, events, and a mark at the moment shown.
 import { drift } from "./drift";
 import { styleColor } from "./element";
 import { columnOf } from "./series";
@@ -7,7 +7,7 @@ import type { Event } from "./types";
 
 const PAD = 6;
 
-/** What is worth a mark, from what the records say. */
+/** The events that get a mark, derived from the series. */
 export function events(source: Source): Event[] {
   const { step } = source.series;
   const [alive, generation] = [source.series.get("alive"), source.series.get("generation_max")];
@@ -30,7 +30,7 @@ export function events(source: Source): Event[] {
   return [...found, ...departures(source)];
 }
 
-/** From when on each weight of the reward is outside what drift alone does, if it still is at the end. */
+/** The step from which each reward weight is outside its drift band, if it still is at the end. */
 function departures(source: Source): Event[] {
   const { layout, series } = source;
   const found: Event[] = [];

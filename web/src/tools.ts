@@ -1,4 +1,4 @@
-// What can be done with a live world beside changing its settings: by hand, to a snapshot and back, into files.
+// Tools for a live world, apart from its settings: editing by hand, a snapshot, a second world, and saving files.
 import { csvOf, save } from "./csv";
 import { by, element, option, show } from "./element";
 import { Live } from "./live";
@@ -57,7 +57,7 @@ export class Tools {
     this.update(live.last);
   }
 
-  /** Does by hand what was chosen; false if a click chooses an agent. */
+  /** Makes the chosen edit; returns false if a click should choose an agent instead. */
   click(source: Source, x: number, y: number, pixel: number): boolean {
     if (!this.live || source !== this.live || this.edit.value === "choose") return false;
     if (this.edit.value === "remove") this.live.act({ type: "remove", x, y, slack: 3 * pixel });

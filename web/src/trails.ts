@@ -1,10 +1,10 @@
-// Where agents came from: the last places of each agent that is followed, drawn as lines that fade.
+// The trails of agents: the last places of each followed agent, drawn as lines that fade.
 import { pack, parse } from "./color";
 import { styleColor } from "./element";
 import type { Scene } from "./scene";
 import type { Frame } from "./types";
 
-const LENGTH = 240; // places of an agent that are kept
+const LENGTH = 240; // places kept per agent
 
 type Spot = [step: number, x: number, y: number];
 
@@ -15,7 +15,7 @@ export class Trails {
     this.places.clear();
   }
 
-  /** Notes where the agents at these places of a frame are, and forgets all others. */
+  /** Adds the positions of the agents at these indices of a frame, and forgets all other agents. */
   note(frame: Frame, followed: number[]): void {
     const kept = new Map<number, Spot[]>();
     for (const i of followed) {

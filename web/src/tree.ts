@@ -1,4 +1,4 @@
-// The tree of the living: how those who live at the moment that is shown descend from one another, colored by a gene.
+// The family tree of the agents alive at the moment shown, colored by a gene.
 import { diverging } from "./color";
 import { by, counted, element, option, picture, show, styleColor, surface } from "./element";
 import { scaleOf } from "./scale";
@@ -6,20 +6,20 @@ import type { Source } from "./source";
 import type { Frame, Life } from "./types";
 
 const PAD = 6;
-const NEAR = 10; // pixels from a line within which a click means it
+const NEAR = 10; // pixels from a line within which a click hits it
 const AXIS = 18; // pixels for the time below the tree
-const FAINT = 0.2; // of the branches that are not chosen
+const FAINT = 0.2; // opacity of the branches that are not chosen
 
-/** A life in the tree: it lives, or some who live descend from it. */
+/** A life in the tree: a living agent, or an ancestor of one. */
 interface Branch {
   life: Life;
   row: number;
-  end: number; // the last step of its line: that of the moment, or the last birth that led to somebody who lives
-  children: Branch[]; // the youngest first
+  end: number; // the last step of its line: the moment shown, or the last birth that led to a living agent
+  children: Branch[]; // youngest first
 }
 
 export class Tree {
-  /** Who of the living descends from the chosen branch, itself among them. */
+  /** The living agents of the chosen branch. */
   bearers = new Set<number>();
   branches: Branch[] = [];
   chosen = -1; // the life of the chosen branch
@@ -27,7 +27,7 @@ export class Tree {
   private key = "";
   private frame: Frame | undefined;
   private readonly known = new Map<number, Branch>();
-  private readonly inside = new Set<Branch>(); // the chosen branch and all that grow from it
+  private readonly inside = new Set<Branch>(); // the chosen branch and its descendants
   private readonly scales: ReturnType<typeof scaleOf>[]; // of the genes
   private readonly host = by<HTMLDivElement>("tree");
   private readonly canvas = element("canvas", { class: "tree" });
@@ -59,7 +59,7 @@ export class Tree {
     this.gather();
   }
 
-  /** Follows the moment that is shown; unseen, as far as a chosen branch is ringed in the arena. */
+  /** Updates the tree to the moment shown; while it is hidden, only if a chosen branch is ringed in the arena. */
   update(frame: Frame | undefined): void {
     if (!frame || (this.host.hidden && this.chosen < 0)) return;
     const theme = styleColor("--quiet");
@@ -72,7 +72,7 @@ export class Tree {
     this.redraw();
   }
 
-  /** Chooses the branch of a life, or none with -1; the same one again lets it go. */
+  /** Chooses the branch of a life, or none with -1. Choosing the same one again deselects it. */
   choose(id: number): void {
     this.chosen = id === this.chosen || !this.known.has(id) ? -1 : id;
     this.gather();
@@ -84,7 +84,7 @@ export class Tree {
     if (this.known.has(parent)) this.choose(parent);
   }
 
-  /** The tree of those who live in a frame, as far back as lives are known. */
+  /** Builds the tree of the agents in a frame, as far back as lives are known. */
   private grow(frame: Frame): void {
     const { lives } = this.source;
     this.known.clear();
@@ -108,7 +108,7 @@ export class Tree {
     this.place(roots.sort((a, b) => a.life.id - b.life.id), living);
   }
 
-  /** A row for each of the living; an ancestor that is dead goes on in the row of the last child. So no lines cross. */
+  /** Gives each living agent a row; a dead ancestor shares the row of its last child, so that no lines cross. */
   private place(roots: Branch[], living: Set<number>): void {
     const order: Branch[] = [];
     const waiting = roots.reverse();

@@ -1,4 +1,4 @@
-// A second world beside the first: the same config and seed with one setting changed, in step with it.
+// A second world next to the first, in step with it: the same config and seed, with one setting changed.
 import { Arena } from "./arena";
 import { type Coloring, colorings, type Painted } from "./color";
 import { by, show } from "./element";
@@ -12,7 +12,7 @@ export class Twin {
   private value = "";
   private colors: Coloring[] = [];
 
-  /** Begins it; the first world must be at its beginning. */
+  /** Starts the second world; the first must be at its beginning. */
   open(first: Live, setting: Setting, value: string): void {
     this.close();
     this.live = new Live(first.world, new Map([...first.changes, [setting.path, value]]), first.seed, first.wanted);
@@ -29,7 +29,7 @@ export class Twin {
     for (const id of ["scene-twin", "caption", "caption-twin"]) by(id).hidden = true;
   }
 
-  /** Draws it with the view and the scale of colors of the first world. */
+  /** Draws the second world with the view and the color scale of the first. */
   draw(first: Arena, now: number, coloring: Coloring, legend: Painted["legend"] | undefined): void {
     const { live, arena } = this;
     if (!live || !arena) return;

@@ -1,15 +1,15 @@
-// What a world consists of and what a moment of it is, as the page knows them. No word here is about one kind of world.
+// Types of a world's layout and of its moments. Nothing here is specific to one kind of world.
 
 export interface Gene {
   name: string;
   role: "reward" | "learning" | "setting" | "rule" | "neutral";
   input: string;
-  title: string; // in plain words
-  unit: string; // "" where there is none
+  title: string; // in plain language
+  unit: string; // "" if there is none
   color: string;
 }
 
-/** How a gene begins, by a normal law, and what a birth adds to it: with `probability` noise of a law and a scale. */
+/** The normal distribution of a gene in founders, and the noise that a birth adds to it with `probability`. */
 export interface GeneLaw {
   mean: number;
   sd: number;
@@ -31,13 +31,13 @@ export interface Species {
   sees: number[]; // types, by channel
   noses: { count: number; degrees: number; decay: number };
   smells: number[]; // types, by channel
-  sets: { place: string; gene: number; low: number; high: number }[]; // numbers that genes of the layout multiply
-  genes: number[]; // of the layout's genes, in the order of the genome
-  laws: GeneLaw[]; // of each of them
-  mating: string; // "pairs" where children have two parents
+  sets: { place: string; gene: number; low: number; high: number }[]; // settings that genes of the layout multiply
+  genes: number[]; // indices into the layout's genes, in the order of the genome
+  laws: GeneLaw[]; // for each of them
+  mating: string; // "pairs" if children have two parents
   stores: { name: string; capacity: number }[]; // energy first
-  observed: { name: string; unit: string; scale: number; meaning: string }[]; // beside rays and touch
-  reward: { meals: { meal: number; gene: number; coef: number }[]; rest: string[] }; // what meals tell of it, and the rest
+  observed: { name: string; unit: string; scale: number; meaning: string }[]; // other than rays and touch
+  reward: { meals: { meal: number; gene: number; coef: number }[]; rest: string[] }; // terms from meals, and the names of the others
 }
 
 export interface Layout {
@@ -51,13 +51,13 @@ export interface Layout {
   arena: { width: number; height: number; walls: [number, number, number, number][] };
   window: number;
   energy_capacity: number;
-  mutation_noise: string; // "tabulated" where births share it
-  founders: boolean; // whether they come from a table
+  mutation_noise: string; // "tabulated" if births share it
+  founders: boolean; // whether founders come from a table
 }
 
 export type Place = [number, number];
 
-/** Everything that has a place at one moment. Agents are in the order of their ids. */
+/** Everything with a position at one moment. Agents are in the order of their ids. */
 export interface Frame {
   step: number;
   id: Int32Array;
@@ -65,7 +65,7 @@ export interface Frame {
   y: Float32Array;
   angle: Float32Array;
   energy: Float32Array;
-  held: Record<string, Float32Array>; // of each store beside energy, as far as it is known; NaN for species without it
+  held: Record<string, Float32Array>; // of each store other than energy, as far as it is known; NaN for species without it
   species: Uint8Array;
   foodX: Float32Array;
   foodY: Float32Array;
@@ -83,21 +83,21 @@ export interface Life {
   children: number;
   reward: number;
   eaten: number[]; // by meal
-  lastMeal: number; // what it ate last, -1 for nothing; only a live world knows it
+  lastMeal: number; // index of its last meal, -1 for none; only a live world has it
   species: number;
-  genome: number[]; // by the layout's genes; NaN for one that its species lacks
+  genome: number[]; // in the order of the layout's genes; NaN for a gene that its species lacks
 }
 
-/** What an agent senses now and how its network answers; only a live world knows it. */
+/** What an agent senses now and its network's output; only a live world has it. */
 export interface AgentProbe {
   id: number;
   reading: Float32Array; // distance + 1, 0 for nothing
   type: Uint8Array;
   output: Float32Array; // two actions, then the value
-  observed: Float32Array; // beside rays and touch, in the order of its species
+  observed: Float32Array; // observations other than rays and touch, in the order of its species
 }
 
-/** Something that happened, for the time line. */
+/** An event on the time line. */
 export interface Event {
   step: number;
   text: string;
@@ -109,7 +109,7 @@ export interface Setting {
   value: number | string | boolean;
   choices: string[];
   whole: boolean;
-  at_once: boolean; // whether a world that has begun can go on with another value
+  at_once: boolean; // whether a running world can take another value
   ge: number | null;
   gt: number | null;
   le: number | null;
@@ -124,7 +124,7 @@ export interface LiveWorld {
   description: string;
   source: string;
   fidelity: string;
-  toml: string; // the whole config, for a world that no preset names; else ""
+  toml: string; // the complete config, for a world without a preset; otherwise ""
   layout: Layout;
   text: string;
   settings: Setting[];
@@ -133,7 +133,7 @@ export interface LiveWorld {
 export interface Part {
   file: string;
   bytes: number;
-  worlds?: ([number, number] | null)[]; // of frames: first and last step of each world
+  worlds?: ([number, number] | null)[]; // for frames: first and last step of each world
   damaged?: boolean;
 }
 

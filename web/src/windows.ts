@@ -1,6 +1,6 @@
-// What each agent got of reward in each window, between two times of learning: whether it learns shows there.
+// The reward of each agent in each window, between two rounds of learning, which shows whether it learns.
 
-/** The living at the end of a window, with the reward and the meals of their lives until then. */
+/** The living agents at the end of a window, with the reward and the meals of their lives until then. */
 export interface WindowEnd {
   step: number;
   id: Int32Array;
@@ -8,7 +8,7 @@ export interface WindowEnd {
   meals: Int32Array;
 }
 
-/** One window of a life: its part from a step to another, and the reward in it. */
+/** The part of a life within one window, from one step to another, and the reward in it. */
 export interface Earned {
   from: number;
   to: number;
@@ -16,7 +16,7 @@ export interface Earned {
 }
 
 export class Windows {
-  private readonly ends = new Map<number, [number, number][]>(); // by agent: step, and the reward until then
+  private readonly ends = new Map<number, [number, number][]>(); // by agent: step, and the reward up to it
 
   add({ step, id, reward }: WindowEnd): void {
     id.forEach((agent, i) => {
@@ -26,7 +26,7 @@ export class Windows {
     });
   }
 
-  /** The windows of a life that have ended, in order. */
+  /** The windows of a life that have ended, in order of time. */
   of(agent: number, birth: number): Earned[] {
     let [from, before] = [birth, 0];
     return (this.ends.get(agent) ?? []).map(([to, until]) => {
@@ -36,7 +36,7 @@ export class Windows {
     });
   }
 
-  /** Forgets what happened after a step. */
+  /** Forgets the windows that ended after a step. */
   rewind(step: number): void {
     for (const [agent, known] of this.ends) this.ends.set(agent, known.filter(([each]) => each <= step));
   }
