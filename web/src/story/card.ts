@@ -1,10 +1,10 @@
-// A result of the contest as a picture for others: what happened in large letters, above the arena and the map.
+// A picture of the contest's result, for sharing: a headline above the arena and the map.
 import { save } from "../csv";
 import { styleColor } from "../element";
 
-const [WIDTH, HEIGHT] = [1200, 630]; // as other sites show pictures of links
+const [WIDTH, HEIGHT] = [1200, 630]; // the size at which other sites preview links
 const EDGE = 40;
-const TOP = 150; // of the pictures
+const TOP = 150; // y of the pictures, below the headline
 
 export function saveResult(headline: string, pictures: HTMLCanvasElement[]): void {
   const card = document.createElement("canvas");

@@ -1,4 +1,4 @@
-// The chances of death and of a child per step, as the model has them (`hedon.config.schema.life`).
+// The probabilities of death and of having a child per step, as in the model (`hedon.config.schema.life`).
 import { styleColor } from "../element";
 import { Chart } from "./chart";
 import type { Stage } from "./stage";
@@ -17,7 +17,7 @@ export function birth(stage: Stage, energy: number): number {
   return of("kappa") / (1 + Math.exp(of("logit_offset") - of("beta") * energy));
 }
 
-/** Plots both chances of a newborn over energy. */
+/** Makes a function that plots both probabilities for a newborn over its energy. */
 export function chances(canvas: HTMLCanvasElement): (stage: Stage) => void {
   const per = { low: 0, high: 1, label: "expected per 1,000 steps" };
   const chart = new Chart(canvas, { low: 0, high: MOST_ENERGY, label: "energy" }, per);

@@ -1,4 +1,4 @@
-// Small plots of the article, on a canvas: axes with their units, lines, dots, and the place under a pointer.
+// Small plots for the article, on a canvas: axes with units, lines, dots, and the place under a pointer.
 import { styleColor } from "../element";
 
 export interface Axis {
@@ -22,7 +22,7 @@ export class Chart {
     this.ink = canvas.getContext("2d")!;
   }
 
-  /** Empties it and draws the axes. */
+  /** Clears the plot and draws the axes. */
   begin(): void {
     const { ink, canvas, x, y } = this;
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
@@ -78,7 +78,7 @@ export class Chart {
     this.ink.fillText(words, this.px(x), this.py(y));
   }
 
-  /** A dot with its name on one side of it, or on the other where there is no room; both are kept within the axes. */
+  /** Draws a dot with its name on one side, or on the other if there is no room. Both stay within the axes. */
   named(words: string, x: number, y: number, color: string, side: "left" | "right"): void {
     const { ink } = this;
     const { clientWidth: width, clientHeight: height } = this.canvas;
@@ -94,13 +94,13 @@ export class Chart {
     const left = side === "left" ? px - room > LEFT : px + room > width - RIGHT;
     ink.textAlign = left ? "right" : "left";
     const at = [px + (left ? -NAME : NAME), py + 4] as const;
-    [ink.strokeStyle, ink.lineWidth, ink.lineJoin] = ["#14171c", 3, "round"]; // so that it can be read on any color
+    [ink.strokeStyle, ink.lineWidth, ink.lineJoin] = ["#14171c", 3, "round"]; // so that it is legible on any color
     ink.strokeText(words, ...at);
     ink.fillStyle = "#ffffff";
     ink.fillText(words, ...at);
   }
 
-  /** The place of an event, within the axes. */
+  /** The coordinates of an event, limited to the axes. */
   place(event: MouseEvent): [number, number] {
     const box = this.canvas.getBoundingClientRect();
     const { x, y } = this;

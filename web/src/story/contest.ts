@@ -1,4 +1,4 @@
-// Scene 5: the reader's feelings against evolution's, in one arena; which has more descendants, in one world and in several.
+// Scene 5: the reader's feelings compete with evolution's in one arena. The side with more descendants wins, in one world or several.
 import type { Coloring } from "../color";
 import { element, show, styleColor } from "../element";
 import { saveResult } from "./card";
@@ -11,21 +11,21 @@ import { Stage } from "./stage";
 const STEPS = 20_480;
 const MORE = 4; // worlds besides the first
 const FITTEST = Math.max(...evidence.surface.value.flat());
-const [TEAL, PURPLE] = [7, 8]; // their places among the distinct colors: no color of a feeling
-const LEAST = 40; // descendants that the plot has room for
-const SPAN = 8; // of a feeling, on the sliders and on the map
+const [TEAL, PURPLE] = [7, 8]; // indices of distinct colors that no feeling has
+const LEAST = 40; // the plot's axis reaches at least this many descendants
+const SPAN = 8; // range of a feeling, on the sliders and on the map
 const FEELINGS = ["species.you.reward.meal_coef", "species.you.genome.action.initial_mean"];
 
-/** How many descendants each side has had at the end of a world. */
+/** The number of descendants each side has had by the end of a world. */
 interface End {
   seed: number;
   you: number;
   evolution: number;
 }
 
-/** The chance that a fair coin falls heads at least `wins` times of `worlds`. */
+/** The probability that a fair coin lands heads at least `wins` times in `worlds` tosses. */
 export function luck(wins: number, worlds: number): number {
-  let [sum, ways] = [0, 1]; // ways to choose i of the worlds
+  let [sum, ways] = [0, 1]; // the number of ways to choose i of the worlds
   for (let i = 0; i <= worlds; i++) {
     if (i >= wins) sum += ways;
     ways = (ways * (worlds - i)) / (i + 1);
@@ -37,8 +37,8 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   const coloring: Coloring = { name: "side", label: "side", scale: "distinct", value: (_, frame, i) => (frame.species[i] === 0 ? TEAL : PURPLE) };
   const stage = new Stage(section, worlds.contest!, { scene: "contest", speed: 4, coloring });
   const lines = new Chart(section.querySelector("#contest-lines")!, { low: 0, high: STEPS, label: "steps" }, { low: 0, high: LEAST, label: "descendants" });
-  stage.arena.rings = false; // the sides differ by color alone
-  stage.play.hidden = true; // a world here is one that counts: Begin runs it to its end, or Reset stops it
+  stage.arena.rings = false; // the sides differ only in color
+  stage.play.hidden = true; // every world here counts: Begin runs it to its end, unless Reset stops it
   const range = { low: -SPAN, high: SPAN };
   const map = new Chart(section.querySelector("#contest-map")!, { ...range, label: "a meal feels like" }, { ...range, label: "moving feels like" });
   const score = section.querySelector<HTMLElement>("#contest-score")!;
@@ -48,7 +48,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   let course: [number, number, number][] = []; // step, your descendants, evolution's
   let results: End[] = [];
   let busy = false;
-  let turn = 0; // how often worlds were begun or forgotten: what waited for a world of an earlier turn stops
+  let turn = 0; // incremented when worlds begin or are discarded, so that code waiting for an earlier world stops
 
   stage.onBegin = () => (course = []);
   stage.onMoment = ({ frame }) => {
@@ -58,12 +58,12 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     course.push([frame.step, born[0]!, born[1]!]);
   };
   const able = () => {
-    buttons[0]!.setAttribute("aria-disabled", String(busy)); // so that it keeps the focus
+    buttons[0]!.setAttribute("aria-disabled", String(busy)); // unlike `disabled`, this keeps the focus
     buttons[1]!.setAttribute("aria-disabled", String(busy || results.length === 0));
   };
   stage.onWords = () => {
     const [yours, its] = [styleColor("--you"), styleColor("--evolution")];
-    lines.x.high = Math.max(STEPS, stage.live.last); // a link may have gone further
+    lines.x.high = Math.max(STEPS, stage.live.last); // a link may lead further
     lines.y.high = Math.max(LEAST, ...course.map(([, ...born]) => Math.max(...born)));
     lines.begin();
     lines.line(course.map(([step, count]) => [step, count]), yours);
@@ -79,7 +79,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   const drawMap = () => {
     map.begin();
     const { value, low, high } = evidence.surface;
-    const step = (high - low) / (value.length - 1); // between two points of the fitted surface
+    const step = (high - low) / (value.length - 1); // between two grid points of the fitted surface
     const edge = (i: number) => Math.min(Math.max(low + (i - 0.5) * step, -SPAN), SPAN);
     value.forEach((row, a) =>
       row.forEach((fit, f) => map.box(edge(f), edge(a), edge(f + 1), edge(a + 1), `hsl(260 45% ${Math.round(12 + (76 * Math.max(fit, 0)) / FITTEST)}%)`)),
@@ -102,7 +102,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     }
     busy = false;
   };
-  /** Keeps how the world ended, if it did. */
+  /** Records the result of the world if it has ended. */
   const note = () => {
     const end = course[course.length - 1];
     if (end && !stage.live.error && (stage.live.last >= STEPS || stage.live.over)) results.push({ seed: stage.seed, you: end[1], evolution: end[2] });
@@ -116,7 +116,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     if (busy) return;
     clear();
     stage.begin(1);
-    stage.host.querySelector(".view")!.scrollIntoView({ block: "nearest" }); // on a phone it is below the button
+    stage.host.querySelector(".view")!.scrollIntoView({ block: "nearest" }); // on a phone the arena is below the button
     void some(1);
   });
   buttons[1]!.addEventListener("click", () => busy || results.length === 0 || void some(MORE));
@@ -127,7 +127,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   map.canvas.addEventListener("click", (event) => {
     map.place(event).forEach((value, i) => {
       const knob = section.querySelector<HTMLInputElement>(`input[data-path="${FEELINGS[i]}"]`)!;
-      knob.value = String(value); // which takes the nearest value that the slider has
+      knob.value = String(value); // the slider takes the nearest value it has
       knob.dispatchEvent(new Event("change"));
     });
     read();
@@ -152,7 +152,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   };
 }
 
-/** How the last world ended, and how often a fair coin would win as many of those that had a winner. */
+/** How the last world ended, and the probability that a fair coin does as well in the worlds that had a winner. */
 function verdict(results: End[]): string {
   if (results.length === 0) return "";
   const { you, evolution } = results[results.length - 1]!;
@@ -165,5 +165,5 @@ function verdict(results: End[]): string {
   return `${counts} A coin does that or ${won >= lost ? "better" : "worse"} in ${chance < 1 ? "less than 1" : show(chance, 0)} of 100 tries.`;
 }
 
-/** How many worlds the reader won, and how many evolution did. */
+/** The numbers of worlds won by the reader and by evolution. */
 const tally = (results: End[]): [number, number] => [results.filter((end) => end.you > end.evolution).length, results.filter((end) => end.you < end.evolution).length];

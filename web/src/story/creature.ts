@@ -1,4 +1,4 @@
-// Scene 1: a creature that a person steers, with its two meters.
+// Scene 1: a creature that the reader steers, with two meters.
 import { show, styleColor } from "../element";
 import type { Coloring } from "../color";
 import { bindGuess } from "./guess";
@@ -8,28 +8,28 @@ import { CALM, Stage } from "./stage";
 import { commandsOf, ofKeys, toward, Track } from "./steer";
 
 export const ONE_COLOR: Coloring = { name: "one", label: "a creature", scale: "distinct", value: () => 0 };
-const STROLL = 1500; // steps that it shows by itself how it moves
-const ENOUGH = 5; // meals
+const STROLL = 1500; // steps for which it moves by itself as a demonstration
+const ENOUGH = 5; // meals that reveal the second slider
 const GLOW = 3; // radii
-const LASTS = 60; // steps in which a feeling fades to a third
-const FLAME = 0.09; // units of a motor's flame per unit of force
+const LASTS = 60; // time constant of a feeling's decay [steps]
+const FLAME = 0.09; // length of a motor's flame per unit of force
 
 export function creature(section: HTMLElement, worlds: Worlds): Scene {
   const stage = new Stage(section, worlds.creature!, { scene: "creature", autoplay: true, speed: 1, coloring: ONE_COLOR, chosen: 0, rays: true, threads: 1 });
   const [least, most] = ["min_force", "max_force"].map((name) => stage.value(`motor.${name}`)) as [number, number];
   const commands = commandsOf(least, most);
   const keys = new Set<string>();
-  let replay: { command: string; until: number }[] = []; // what a link does, until which step
+  let replay: { command: string; until: number }[] = []; // commands from a link, each with the step at which it ends
   let track = new Track();
   let goal: [number, number] | undefined;
   let strolling = !CALM.matches;
   let steered = false; // whether a reader, or a link, has steered this world
   let command = ".";
-  let felt = 0; // reward lately
-  let rewarded = 0; // in all, at the last moment
+  let felt = 0; // recent reward, decaying
+  let rewarded = 0; // total reward at the last moment
   const guess = bindGuess(section);
   const hint = section.querySelector<HTMLElement>(".hint")!;
-  const second = section.querySelector<HTMLElement>("#creature-moving")!; // a slider for those who know the first
+  const second = section.querySelector<HTMLElement>("#creature-moving")!; // the second slider
   const told = (name: string) => section.querySelector<HTMLElement>(`#creature-${name}`)!;
 
   const takeOver = () => {
@@ -86,7 +86,7 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
     const reward = stage.life()?.reward ?? 0;
     felt = felt * Math.exp(-done / LASTS) + reward - rewarded;
     rewarded = reward;
-    if (stage.running && replay.length > 0) stage.move(); // at once: it may be hundreds of short commands
+    if (stage.running && replay.length > 0) stage.move(); // without waiting for the next picture, since there may be hundreds of short commands
   };
   stage.onPicture = () => {
     drawMotors(stage, commands[command]!, [least, most]);
@@ -113,10 +113,10 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   section.addEventListener("reset", () => (strolling = false));
   const read = bindKnobs(section, stage, () => {
     strolling = false;
-    stage.setPlaying(false); // until somebody steers
+    stage.setPlaying(false); // until the reader steers
     stage.begin();
   });
-  Object.assign(stage, { commands, track: () => String(track) }); // for tests and curious persons
+  Object.assign(stage, { commands, track: () => String(track) }); // for the browser's console, and for tests
   return {
     section,
     stage,
@@ -154,17 +154,17 @@ function bindSteering(stage: Stage, keys: Set<string>, takeOver: () => void, go:
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => go());
 }
 
-/** What a pointer used lets go of the arrow keys, which steer; who came there by keys keeps the focus. */
+/** Blurs controls after a click, so that the arrow keys steer again. Keyboard users keep the focus. */
 function releaseFocus(section: HTMLElement): void {
   const release = () => {
     const { activeElement } = document;
     if (activeElement instanceof HTMLElement && section.contains(activeElement) && activeElement.matches("input, button, a")) activeElement.blur();
   };
-  section.addEventListener("click", (event) => event.detail > 0 && setTimeout(release)); // a label gives the focus after it
+  section.addEventListener("click", (event) => event.detail > 0 && setTimeout(release)); // a click on a label moves the focus afterwards
   section.addEventListener("pointerdown", () => document.addEventListener("pointerup", () => setTimeout(release), { once: true }));
 }
 
-/** What it feels, as a glow around it: warm if that is good, cold if bad. */
+/** Draws its feeling as a glow around it, warm for good and cold for bad. */
 function drawGlow(stage: Stage, felt: number): void {
   const { frame, ink, arena } = stage;
   const strength = Math.min(Math.abs(felt), 1);
@@ -183,7 +183,7 @@ function drawGlow(stage: Stage, felt: number): void {
   ink.globalAlpha = 1;
 }
 
-/** Both motors as flames behind the body: the longer, the stronger. */
+/** Draws both motors as flames behind the body, with lengths proportional to their forces. */
 function drawMotors(stage: Stage, actions: [number, number], [least, most]: [number, number]): void {
   const { frame, ink, arena } = stage;
   if (!frame || frame.id.length === 0) return;

@@ -1,4 +1,4 @@
-// Scene 4: a feeling evolves while one looks, beside genes that do nothing; again with other luck, and without learning.
+// Scene 4: a feeling evolves before the reader's eyes, compared with genes that do nothing, with another seed and without learning.
 import { diverging, type Coloring } from "../color";
 import { show, styleColor } from "../element";
 import type { Life } from "../types";
@@ -12,18 +12,18 @@ import { Stage } from "./stage";
 const STEPS = 12_288;
 const APART = 256; // steps between two points of a line
 const POINTS = 41; // of a guess
-const KEPT = 11; // of them in a link
+const KEPT = 11; // of these, kept in a link
 const LIMIT = 1.5; // of a histogram
-const COLORED = 0.75; // feelings beyond have the color of this one
+const COLORED = 0.75; // feelings at and beyond this value have the same color
 const RATE = "learning.learning_rate";
 
-/** The means of a world so far: of the feeling, and of each gene that does nothing. */
+/** The means in a world so far of the feeling and of each neutral gene. */
 interface Course {
   seed: number;
   learns: boolean;
   step: number[];
   feeling: number[];
-  neutral: number[][]; // by gene
+  neutral: number[][]; // [gene][sample]
 }
 
 export function evolve(section: HTMLElement, worlds: Worlds): Scene {
@@ -33,9 +33,9 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
   const stage = new Stage(section, worlds.evolve!, { scene: "evolve", speed: 8, coloring });
   const chart = new Chart(section.querySelector("#evolve-plot")!, { low: 0, high: STEPS, label: "steps" }, { low: -1, high: 1, label: "mean feeling" });
   const answer = section.querySelector<HTMLElement>("#evolve-answer")!;
-  const then = section.querySelector<HTMLElement>("#evolve-then")!; // what it means, after a reader has seen it
+  const then = section.querySelector<HTMLElement>("#evolve-then")!; // the explanation, shown after the reader has seen the result
   const [run, again, unable] = ["run", "seed", "learner"].map((name) => section.querySelector<HTMLButtonElement>(`#evolve-${name}`)!) as [HTMLButtonElement, HTMLButtonElement, HTMLButtonElement];
-  stage.play.hidden = true; // its buttons run it to the end of the plot, or Reset stops it
+  stage.play.hidden = true; // the scene's buttons run it to the end of the plot, unless Reset stops it
   let done: Course[] = [];
   let now: Course | undefined;
   let living: Life[] = [];
@@ -57,7 +57,7 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
   };
   const points = ({ step }: Course, values: number[]) => step.map((at, i): [number, number] => [at, values[i]!]);
   const draw = () => {
-    chart.x.high = Math.max(STEPS, stage.live?.last ?? 0); // a link may have gone further
+    chart.x.high = Math.max(STEPS, stage.live?.last ?? 0); // a link may lead further
     chart.begin();
     const [mark, gray] = [styleColor("--mark"), styleColor("--before")];
     for (const each of done) chart.line(points(each, each.feeling), mark, 1, each.learns ? [] : [5, 4]);
@@ -74,7 +74,7 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     else stage.notes.delete("guess");
     pad.shut = busy || done.length > 0;
     chart.canvas.classList.toggle("shown", pad.shut);
-    run.setAttribute("aria-disabled", String(busy || !pad.whole)); // so that it keeps the focus
+    run.setAttribute("aria-disabled", String(busy || !pad.whole)); // unlike `disabled`, this keeps the focus
     for (const button of [again, unable]) button.setAttribute("aria-disabled", String(busy || done.length === 0));
     answer.textContent = words();
     then.hidden = done.length === 0;
@@ -106,7 +106,7 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     const own = now;
     draw();
     await stage.runTo(STEPS);
-    if (own !== now) return; // another began meanwhile
+    if (own !== now) return; // another world has begun in the meantime
     busy = false;
     if (own && own.step.length > 1 && !stage.live.error) done.push(own);
     draw();
@@ -145,13 +145,13 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
   };
 }
 
-/** A guess in a link: some of its points. */
+/** A guess as it is kept in a link, with fewer points. */
 const kept = (guess: number[]): string =>
   Array.from({ length: KEPT }, (_, i) => guess[Math.round((i * (POINTS - 1)) / (KEPT - 1))]!.toFixed(2)).join("_");
 
 const signed = (value: number): string => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(2)}`;
 
-/** In how many worlds that learned the feeling went up. */
+/** A sentence with the number of worlds with learning in which the feeling rose. */
 function tally(done: Course[]): string {
   const learned = done.filter((each) => each.learns);
   if (learned.length < 2) return "";

@@ -1,4 +1,4 @@
-// Scene 3: many agents that die and have children, and what children have of their parents.
+// Scene 3: many agents that die and have children, and what children inherit.
 import { type Coloring, diverging } from "../color";
 import { counted, element, show, styleColor } from "../element";
 import type { Life } from "../types";
@@ -10,9 +10,9 @@ import { Marks } from "./marks";
 import { openStage, type Scene, type Worlds } from "./scene";
 import { Stage } from "./stage";
 
-const COLORED = 1.5; // feelings beyond have the color of this one
-const RANGE = 3; // of the plot of feelings
-const FIRST = 39; // the agent that is chosen at first: in the first world its family grows
+const COLORED = 1.5; // feelings at and beyond this value have the same color
+const RANGE = 3; // the plot of feelings shows -RANGE to RANGE
+const FIRST = 39; // the agent chosen at first; its family grows in the first world
 
 export function family(section: HTMLElement, worlds: Worlds): Scene {
   const gene = (name: string) => worlds.family!.layout.genes.findIndex((each) => each.name === name);
@@ -40,13 +40,13 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     if (id < 0) stage.notes.delete("agent");
     number.value = id < 0 ? "" : String(id);
   };
-  /** The living that have a parent, in the order of their ids. */
+  /** The ids of living agents that have a parent, in ascending order. */
   const children = (): number[] => [...(stage.frame?.id ?? [])].filter((id) => (stage.life(id)?.parent ?? -1) >= 0);
   const chooseNext = () => {
     const ids = children();
     if (ids.length > 0) choose(ids.find((id) => id > stage.chosen) ?? ids[0]!);
   };
-  /** Every child whose parent is known, with its parent. */
+  /** Pairs of each child whose parent is known and that parent. */
   const pairs = (): [Life, Life][] =>
     [...stage.live.lives.all()].flatMap((child): [Life, Life][] => {
       const parent = child.parent >= 0 ? stage.live.lives.get(child.parent) : undefined;

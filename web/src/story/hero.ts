@@ -1,26 +1,26 @@
-// What the article opens with: a recording of a world in which a feeling evolves, with two genes counted below it.
+// The opening of the article: a recording of a world in which a feeling evolves, with histograms of two genes below it.
 import { diverging } from "../color";
 import { by, show, styleColor, surface } from "../element";
 import { fileAddress } from "../files";
 import { type Actor, load } from "./recording";
 import { CALM } from "./stage";
 
-const SECONDS = 20; // of the whole recording
-const REST = 3; // seconds that its last moment is shown
+const SECONDS = 20; // length of the whole recording
+const REST = 3; // seconds for which its last moment is shown
 const BINS = 25; // bars of a histogram
-const SPAN = 0.5; // share of the range of feelings that has colors of its own
-const FACES = 21; // colors that creatures are drawn in beforehand
-const COUNT_MS = 100; // between two counts
-const FADE = 3; // moments in which a creature appears, and in which the ring of one that died fades
-const EYE = 0.6; // from the middle of the face to an eye [radian]
+const SPAN = 0.5; // share of the range of feelings over which colors differ
+const FACES = 21; // colors for which creatures are drawn in advance
+const COUNT_MS = 100; // between two updates of the histograms
+const FADE = 3; // moments over which a creature fades in, and over which the ring of a dead one fades out
+const EYE = 0.6; // angle from the middle of the face to an eye [radian]
 
-/** For the browser's console, and for tests. */
+/** State for the browser's console, and for tests. */
 interface Playing {
   moment: () => number;
   jump: (to: number) => void;
 }
 
-/** Plays the recording while it is seen; without it the picture stays. */
+/** Plays the recording while it is visible; without a recording the still picture stays. */
 export async function hero(): Promise<Playing> {
   const recording = await load(fileAddress("hero.gz"));
   const canvas = by<HTMLCanvasElement>("hero-world");
@@ -31,9 +31,9 @@ export async function hero(): Promise<Playing> {
   const limit = head.limit * SPAN;
   const last = head.moments - 1;
   let [seen, playing, moment, before] = [true, !CALM.matches, CALM.matches ? last : 0, performance.now()];
-  let due = 0; // when they are counted again
+  let due = 0; // time of the next update of the histograms
   let faces: HTMLCanvasElement[] = [];
-  let size = 0; // for which the faces are drawn [pixel per unit]
+  let size = 0; // scale at which the faces are drawn [pixel per unit]
 
   const label = () => {
     play.textContent = playing ? "Pause" : "Play";
@@ -126,7 +126,7 @@ export async function hero(): Promise<Playing> {
   return { moment: () => moment, jump: (to) => (moment = to) };
 }
 
-/** Where it looks [radian of the canvas]: along its way, as far as that is known, turning smoothly. */
+/** The direction in which it looks [radian on the canvas]: along its path, as far as it is known, with smooth turns. */
 function heading({ x, y }: Actor, age: number): number {
   const i = Math.floor(age);
   const along = (from: number) => {
@@ -141,7 +141,7 @@ function heading({ x, y }: Actor, age: number): number {
   return now + turn * Math.min(age - i, 1);
 }
 
-/** A creature with this feeling, looking to the right. */
+/** Draws a creature with this feeling, facing right. */
 function face(feeling: number, limit: number, radius: number): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = Math.ceil(2 * radius + 2);
@@ -160,7 +160,7 @@ function face(feeling: number, limit: number, radius: number): HTMLCanvasElement
   return canvas;
 }
 
-/** How many have a gene of each value, from -limit to limit, with a line at 0. */
+/** Draws a histogram of a gene's values from -limit to limit, with a line at 0. */
 export function histogram(id: string, values: number[], limit: number, color: (value: number) => string): void {
   const canvas = by<HTMLCanvasElement>(id);
   const ink = surface(canvas);

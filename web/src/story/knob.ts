@@ -1,10 +1,10 @@
-// Sliders of settings, and the numbers in the text that follow them: the markup names the paths, this binds them.
+// Binds sliders, and numbers in the text, to the settings whose paths the markup names.
 import { show } from "../element";
 import type { Stage } from "./stage";
 
 /**
- * Binds every `input[data-path]` of a scene to its world, and every `[data-of]` in its text to a setting. While a slider moves the
- * numbers follow; when it rests the world begins again. `said` has how the value of a path is told beside its slider, if not as a number.
+ * Binds every `input[data-path]` of a scene to its world, and every `[data-of]` in its text to a setting. The numbers follow a
+ * moving slider; once it rests, the world begins again. `said` formats the values of some paths next to their sliders.
  */
 export function bindKnobs(section: HTMLElement, stage: Stage, begin: () => void, said: Record<string, (value: number) => string> = {}): () => void {
   const knobs = [...section.querySelectorAll<HTMLInputElement>("input[data-path]")];
@@ -20,7 +20,7 @@ export function bindKnobs(section: HTMLElement, stage: Stage, begin: () => void,
     for (const knob of knobs) {
       const value = stage.value(paths(knob)[0]!);
       knob.value = String(value);
-      tell(knob, value); // which a link may set to what lies between two places of the slider
+      tell(knob, value); // a link may set a value between two positions of the slider
     }
   };
   for (const knob of knobs) {

@@ -1,4 +1,4 @@
-// Scene 2: the creature learns by itself; what it eats over time, and its path before and after.
+// Scene 2: the creature learns by itself. Shows its meals over time, and its path before and after learning.
 import { counted, show, styleColor } from "../element";
 import { Chart } from "./chart";
 import { ONE_COLOR } from "./creature";
@@ -9,8 +9,8 @@ import { Stage } from "./stage";
 
 const ROUNDS = 80; // windows with learning
 const MOVING = "genome.action.initial_mean";
-const PATH = 500; // steps of a path
-const FEW = 5; // rounds at the start and at the end that the answer compares
+const PATH = 500; // length of a path [steps]
+const FEW = 5; // the answer compares this many rounds at the start and at the end
 
 export function learning(section: HTMLElement, worlds: Worlds): Scene {
   const stage = new Stage(section, worlds.learning!, { scene: "learning", speed: 2, coloring: ONE_COLOR, chosen: 0, threads: 1, trace: true });
@@ -19,10 +19,10 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
   const chart = new Chart(section.querySelector("canvas.chart")!, { low: 0, high: ROUNDS, label: "rounds of learning" }, { low: 0, high: 40, label: "meals / 1,000 steps" });
   const guess = bindGuess(section);
   const run = section.querySelector<HTMLButtonElement>("#learning-run")!;
-  let meals: number[] = [0]; // at the end of each round: what it ate until then
-  let path: number[] = []; // x, y of every step of the first and the last ones
-  let turn = 0; // how many worlds began
-  let lastPace = NaN; // units per step on the path that ends with the last round
+  let meals: number[] = [0]; // cumulative meals at the end of each round
+  let path: number[] = []; // x, y of every step at the start and at the end
+  let turn = 0; // number of worlds begun
+  let lastPace = NaN; // speed on the path that ends with the last round [u/step]
 
   /** Meals per 1,000 steps between two rounds. */
   const rate = (from: number, to: number): number => (1000 * (meals[to]! - meals[from]!)) / ((to - from) * window);
@@ -34,7 +34,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     chart.begin();
     chart.line(points, styleColor("--mark"));
   };
-  /** Units per step on a part of the path. */
+  /** Mean speed on a part of the path [u/step]. */
   const pace = (from: number, to: number): number => {
     let way = 0;
     for (let i = from + 2; i + 1 < to; i += 2) way += Math.hypot(path[i]! - path[i - 2]!, path[i + 1]! - path[i - 1]!);
@@ -80,7 +80,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     draw();
     const round = Math.min(Math.floor(stage.live.last / window), ROUNDS);
     run.textContent = stage.running ? `Learning: round ${round} of ${ROUNDS}` : stage.live.last >= steps ? "Again, with other luck" : "Let it learn";
-    run.setAttribute("aria-disabled", String(stage.running)); // which, unlike `disabled`, leaves it the focus
+    run.setAttribute("aria-disabled", String(stage.running)); // unlike `disabled`, this keeps the focus
     if (meals.length > ROUNDS) answer();
   };
   const learn = async () => {
@@ -99,7 +99,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     stage.begin(1);
     void learn();
   });
-  Object.assign(stage, { rate, pace: () => pace(2 * PATH, path.length) }); // for tests and curious persons
+  Object.assign(stage, { rate, pace: () => pace(2 * PATH, path.length) }); // for the browser's console, and for tests
   return {
     section,
     stage,

@@ -1,19 +1,19 @@
-// A place in the article as an address: the scene, what differs from its config, the seed, the step, and what it was there.
+// A place in the article as an address: the scene, the changes to its config, the seed, the step and the digest there.
 
 export interface Place {
   scene: string;
   seed: number;
   step: number;
-  digest: string; // its first digits; "" for none
-  changes: Map<string, string>; // settings by path, with another value than the scene's config
-  notes: Map<string, string>; // what else a scene keeps, by a name without a dot
-  damage?: string; // what a link can never have, in words
+  digest: string; // its first digits; "" if there is none
+  changes: Map<string, string>; // settings that differ from the scene's config, by path
+  notes: Map<string, string>; // other state of a scene, by a name without a dot
+  damage?: string; // the part that no valid link has, in words
 }
 
-export const SHORT = 8; // digits of a digest that a link has
+export const SHORT = 8; // digits of a digest in a link
 const OWN = new Set(["scene", "seed", "step", "digest"]);
 const WHOLE = /^\d{1,15}$/;
-/** What a link may have besides settings, and the form of each. */
+/** The parameters of a link other than settings, with the form of each. */
 const FORMS: Record<string, RegExp> = {
   scene: /^/,
   seed: WHOLE,
@@ -32,14 +32,14 @@ export function addressOf({ scene, seed, step, digest, changes, notes }: Place):
   return `#${link}`;
 }
 
-/** Copies the page's address, and says so for a moment in the link that was clicked. */
+/** Copies the page's address, and confirms this for a moment in the clicked link. */
 export function copyAddress(link: HTMLAnchorElement): void {
-  void navigator.clipboard?.writeText(location.href).catch(() => {}); // a browser may refuse; the address has it too
+  void navigator.clipboard?.writeText(location.href).catch(() => {}); // a browser may refuse, but the address bar has it too
   link.textContent = "link copied";
   setTimeout(() => (link.textContent = "link"), 1500);
 }
 
-/** The place of an address, also of a damaged one; undefined if it names none. Paths of settings have dots, notes have none. */
+/** The place of an address, even of a damaged one; undefined if it names none. Paths of settings have dots, notes do not. */
 export function placeOf(address: string): Place | undefined {
   const link = new URLSearchParams(address.replace(/^#/, ""));
   const scene = link.get("scene");
@@ -56,7 +56,7 @@ export function placeOf(address: string): Place | undefined {
   };
 }
 
-/** What is wrong with the form of a link, or "". One that names its scene alone is whole. */
+/** The error in the form of a link, or "". A link with only a scene is valid. */
 function damageOf(link: URLSearchParams): string {
   const short = (text: string) => (text.length > 40 ? `${text.slice(0, 40)}…` : text);
   for (const [name, value] of link) {

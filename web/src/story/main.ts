@@ -1,4 +1,4 @@
-// Where the article begins: makes its scenes, plays those that are seen, and opens the places of links.
+// Entry point of the article: makes its scenes, plays the visible ones, and opens the places of links.
 import "./story.css";
 import { by, element } from "../element";
 import { fileAddress } from "../files";
@@ -17,10 +17,10 @@ import { showStill } from "./still";
 import type { Stage } from "./stage";
 
 const MAKERS: Record<string, (section: HTMLElement, worlds: Worlds) => Scene> = { creature, learning, family, evolve, contest, sandbox };
-const PRINTED = 600; // steps of a world before it is printed
+const PRINTED = 600; // steps that a world runs before it is printed
 const scenes: Record<string, Scene> = {};
 const story = { scenes, pictures: 0, opened: "" };
-Object.assign(window, { hedon: story }); // for a curious person's console, and for tests
+Object.assign(window, { hedon: story }); // for the browser's console, and for tests
 
 async function begin(): Promise<void> {
   const answer = await fetch(fileAddress("data/story.json"));
@@ -31,7 +31,7 @@ async function begin(): Promise<void> {
     try {
       const scene = (scenes[name] = make(by(name), worlds));
       seen.observe(scene.stage?.host.querySelector(".view") ?? scene.section);
-    } catch (error) { // for example without graphics: a picture takes its place, and the other scenes still work
+    } catch (error) { // for example without WebGL: a picture takes its place, and the other scenes still work
       by(name).append(element("p", { class: "fault", text: `This scene cannot be shown: ${told(error)}.` }));
       showStill(by(name).querySelector(".view")!, name);
     }
@@ -41,7 +41,7 @@ async function begin(): Promise<void> {
   await openAddress();
 }
 
-/** A scene that comes into sight has its world, and one that leaves it rests. */
+/** Starts the world of a scene that becomes visible, and pauses one that leaves the screen. */
 function see({ target, isIntersecting }: IntersectionObserverEntry): void {
   const stage = Object.values(scenes).find((each) => each.section.contains(target))?.stage;
   if (!stage) return;
@@ -64,16 +64,16 @@ async function openAddress(): Promise<void> {
   } catch (error) {
     throw new Error(`The link is damaged: ${told(error)}.`);
   }
-  if (location.hash !== hash) return; // another link was opened since
+  if (location.hash !== hash) return; // another link has been opened in the meantime
   story.opened = hash;
   const other = scene.stage && otherWorld(scene.stage, place);
   if (other) throw new Error(other);
 }
 
-/** What a world does not have that its link has, or "". */
+/** A message if the world differs from its link, or "". */
 function otherWorld({ live, chosen }: Stage, place: Place): string {
   const digest = live.digest();
-  const there = digest !== "" && (live.last === place.step || live.over); // not so if a reader began another meanwhile
+  const there = digest !== "" && (live.last === place.step || live.over); // false if the reader has begun another world in the meantime
   if (there && place.digest && !digest.startsWith(place.digest)) {
     return `This is not the world of the link, whose letters are ${place.digest}: it is damaged, or made by another version, or by a browser that rounds otherwise.`;
   }
@@ -106,7 +106,7 @@ for (const { source, command } of Object.values(evidence)) by("source-list").app
 
 document.addEventListener("visibilitychange", () => Object.values(scenes).forEach(({ stage }) => stage?.unseen()));
 
-/** Prints the article with a picture in each scene, of worlds that no reader has begun too. */
+/** Prints the article with a picture in each scene, including those whose world has not begun. */
 async function print(): Promise<void> {
   for (const { stage } of Object.values(scenes)) {
     if (!stage) continue;
@@ -118,7 +118,7 @@ async function print(): Promise<void> {
 }
 by("print").addEventListener("click", () => void print());
 
-/** The recording at the top; without it the picture stays, and the article too. */
+/** Plays the recording at the top. If it fails, its still picture and the rest of the article remain. */
 function open(): void {
   const fault = by("hero-fault");
   fault.hidden = true;

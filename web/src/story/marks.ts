@@ -1,16 +1,16 @@
-// Rings where creatures died and lines between those just born and their parents, drawn above an arena.
+// Rings where creatures died, and lines between newborns and their parents, drawn above an arena.
 import { styleColor } from "../element";
 import type { Moment } from "../live.worker";
 import type { Life, Place } from "../types";
 import type { Stage } from "./stage";
 
-const FADE = 300; // steps in which a mark fades
+const FADE = 300; // steps until a mark has faded
 
-/** Where creatures die and are born, for as long as that can be seen. */
+/** The recent deaths and births, for as long as their marks are visible. */
 export class Marks {
   readonly deaths: { step: number; place: Place; color: string }[] = [];
   readonly births: { step: number; child: number; parent: number }[] = [];
-  private places = new Map<number, Place>(); // of the living, at the last moment
+  private places = new Map<number, Place>(); // of living creatures, at the last moment
 
   constructor(
     private readonly stage: Stage,

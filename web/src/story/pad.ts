@@ -1,13 +1,13 @@
-// A plot that a reader draws a guess into, from left to right, by pointer or by arrow keys.
+// A plot into which the reader draws a guess from left to right, with a pointer or the arrow keys.
 import type { Chart } from "./chart";
 
-const NUDGE = 0.05; // of the plot's height, that a key moves the pen by
+const NUDGE = 0.05; // share of the plot's height by which a key moves the pen
 
 export class Pad {
-  guess: number[] = []; // at the first points of the plot, equally far apart
-  shut = false; // whether it takes no more: a finger scrolls over it
+  guess: number[] = []; // levels at equally spaced points, from the left
+  shut = false; // whether it accepts no more drawing, so that a finger scrolls over it
 
-  /** A plot with some points across; `begin` is where the guess starts, `draw` is called when it changed. */
+  /** Makes a pad with `points` points. The guess starts at the level `begin`; `draw` is called after each change. */
   constructor(
     readonly chart: Chart,
     readonly points: number,
@@ -15,7 +15,7 @@ export class Pad {
     readonly draw: () => void,
   ) {
     const { canvas } = chart;
-    /** Of several fingers the first draws. */
+    /** Whether a pointer draws: of several fingers, only the first. */
     const draws = (event: PointerEvent) => !this.shut && event.isPrimary && event.buttons === 1;
     canvas.addEventListener("pointerdown", (event) => {
       if (!draws(event)) return;
@@ -43,7 +43,7 @@ export class Pad {
     this.draw();
   }
 
-  /** Draws on to a place, in a straight line. */
+  /** Extends the guess to a place in a straight line. */
   put(x: number, level: number): void {
     const { low, high } = this.chart.y;
     const value = Math.min(Math.max(level, low), high);

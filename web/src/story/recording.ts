@@ -1,4 +1,4 @@
-// The recording that the article opens with: who was there, and where, at each of its moments. `web/hero.py` writes it.
+// The recording at the top of the article: the agents and foods at each moment, and their positions. Written by `web/hero.py`.
 
 interface Head {
   width: number;
@@ -7,11 +7,11 @@ interface Head {
   foodRadius: number;
   every: number; // steps between two moments
   moments: number;
-  limit: number; // of a feeling
-  columns: Record<string, number>; // numbers of each column
+  limit: number; // largest absolute value of a feeling
+  columns: Record<string, number>; // length of each column
 }
 
-/** An agent of the recording: its genes, and where it was from moment `first` on. */
+/** An agent of the recording: its genes, and its positions from moment `first` on. */
 export interface Actor {
   first: number;
   feeling: number;
@@ -30,10 +30,10 @@ export interface Morsel {
 export interface Recording {
   head: Head;
   actors: Actor[];
-  foods: Morsel[]; // by their first moment
+  foods: Morsel[]; // in the order of their first moments
 }
 
-const GENE = 127; // whole numbers up to the limit of a feeling
+const GENE = 127; // integer that stands for the limit of a feeling
 
 export async function load(address: string): Promise<Recording> {
   const answer = await fetch(address);

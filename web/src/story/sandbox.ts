@@ -1,4 +1,4 @@
-// After the last scene: other worlds to change; pictures, videos, configs and links of them.
+// After the last scene: other worlds to change, with pictures, videos, configs and links of them.
 import { type Coloring, ramp } from "../color";
 import { save } from "../csv";
 import { by, styleColor } from "../element";
@@ -8,8 +8,8 @@ import { bindKnobs } from "./knob";
 import { openStage, type Scene, type Worlds } from "./scene";
 import { Stage } from "./stage";
 
-const VIDEO_MS = 8000; // of a video
-const PICTURE_WIDTH = 1600; // of a picture, at least [pixel]
+const VIDEO_MS = 8000; // length of a video
+const PICTURE_WIDTH = 1600; // minimum width of a picture [pixel]
 const APART = 16; // steps between two points of the chart
 const ABOUT: Record<string, string> = {
   predators: "Predators (ringed) eat prey. Both learn, and what the sight of the other feels like evolves.",
@@ -21,7 +21,7 @@ const ABOUT: Record<string, string> = {
 export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
   const coloring: Coloring = { name: "energy", label: "energy", scale: "ramp", low: 0, value: (_, frame, i) => frame.energy[i]! };
   const stage = new Stage(section, worlds.predators!, { scene: "sandbox", autoplay: true, speed: 2, coloring });
-  stage.arena.ringColor = "--ink"; // that of a predator is much like amber
+  stage.arena.ringColor = "--ink"; // a predator's own color is too close to amber
   const chart = new Chart(section.querySelector("canvas.chart")!, { low: 0, high: 1000, label: "steps" }, { low: 0, high: 10, label: "alive (gray: food)" });
   const reads: (() => void)[] = [];
   let course: [step: number, food: number, ...alive: number[]][] = [];
@@ -74,7 +74,7 @@ export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
     const draw = () => stage.arena.draw(stage.live, stage.frame, coloring, stage.chosen);
     scene.enlarged = Math.max(1, PICTURE_WIDTH / scene.canvas.width);
     draw();
-    scene.canvas.toBlob((blob) => blob && save(`${name}.png`, blob)); // of this moment
+    scene.canvas.toBlob((blob) => blob && save(`${name}.png`, blob)); // of the current moment
     scene.enlarged = 1;
     draw();
   });
@@ -95,7 +95,7 @@ export function sandbox(section: HTMLElement, worlds: Worlds): Scene {
 
 function bindVideo(made: HTMLButtonElement, stage: Stage, name: () => string): void {
   if (!("MediaRecorder" in window)) {
-    made.hidden = true; // this browser has none
+    made.hidden = true; // this browser cannot record video
     return;
   }
   made.addEventListener("click", () => {

@@ -1,4 +1,4 @@
-// What a scene of the article is to the page: its section, its stage, and how it opens at a place.
+// A scene of the article: its section, its stage, and how it opens at a place.
 import type { LiveWorld } from "../types";
 import type { Place } from "./link";
 import type { Stage } from "./stage";
@@ -8,13 +8,13 @@ export type Worlds = Record<string, LiveWorld>;
 export interface Scene {
   section: HTMLElement;
   stage?: Stage;
-  /** Shows the place of a link; without it the page begins the world and runs it to the step. */
+  /** Shows the place of a link. By default the page begins the world and runs it to the step. */
   open?: (place: Place) => Promise<unknown>;
 }
 
 /**
  * Begins the world of a link and runs it to its step; `begun` is called between the two, to show what the link changes.
- * A link with a value that is refused changes nothing. Returns whether no other world began meanwhile.
+ * A link with an invalid value changes nothing. Resolves to false if another world has begun in the meantime.
  */
 export async function openStage(stage: Stage, place: Place, begun: () => void = () => {}): Promise<boolean> {
   for (const [path, value] of place.changes) {

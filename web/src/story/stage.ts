@@ -1,4 +1,4 @@
-// One world of the article on its canvas: it plays while it is seen, begins again, runs to a step, and has a link.
+// One world of the article on its canvas. It plays while visible, can be restarted or run to a step, and has a link.
 import { Arena } from "../arena";
 import type { Coloring } from "../color";
 import { element, show } from "../element";
@@ -10,20 +10,20 @@ import type { Frame, Life, LiveWorld } from "../types";
 import { addressOf, copyAddress, type Place, SHORT } from "./link";
 import { hideStill, showStill } from "./still";
 
-const PICTURE_MS = 12; // of work for a world that plays, between two pictures
-const RUN_MS = 100; // of work for a world that runs to a step, between two looks at it
-const WORDS_MS = 150; // between two looks at the words
+const PICTURE_MS = 12; // of work between two pictures, for a world that plays
+const RUN_MS = 100; // of work between two updates, for a world that runs to a step
+const WORDS_MS = 150; // between two updates of the text
 export const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
 export interface Camera {
   scene: string; // the id of its section
   speed: number; // steps per picture
   coloring: Coloring;
-  chosen?: number; // the agent that is followed from the start
-  autoplay?: boolean; // whether it moves as soon as it is seen
+  chosen?: number; // the agent followed from the start
+  autoplay?: boolean; // whether it plays as soon as it is visible
   rays?: boolean;
-  threads?: number; // 0 or nothing for as many as help
-  trace?: boolean; // whether the path of the chosen agent is noted
+  threads?: number; // 0 or undefined lets the worker choose
+  trace?: boolean; // whether the path of the chosen agent is recorded
 }
 
 export class Stage {
@@ -34,18 +34,18 @@ export class Stage {
   seen = false; // whether its arena is on the screen
   frame: Frame | undefined;
   chosen: number;
-  actions: Actions | undefined; // of the chosen agent, if a person drives it
+  actions: Actions | undefined; // of the chosen agent, if the reader drives it
   notes = new Map<string, string>();
-  edited = false; // whether no config and notes give this world
+  edited = false; // whether the world can no longer be reproduced from its config and notes
   pictures = 0;
   onBegin: () => void = () => {};
   onMoment: (moment: Moment) => void = () => {};
   onPicture: () => void = () => {};
   onWords: () => void = () => {};
   readonly arena: Arena;
-  readonly ink: CanvasRenderingContext2D; // above the arena, in pixels of the page
+  readonly ink: CanvasRenderingContext2D; // overlay of the arena, in pixels of the page
   readonly play = button("Play", "main");
-  readonly again = Object.assign(button("Reset"), { title: "Begin again: the first world, with every slider as at first" });
+  readonly again = Object.assign(button("Reset"), { title: "Begin again with the first world and every slider as it was at first" });
   readonly bar = element("div", { class: "bar" });
   private readonly clock = element("span", { class: "clock" });
   private readonly same = element("a", { class: "permalink", text: "link" });
@@ -89,14 +89,14 @@ export class Stage {
     (host.querySelector(".meters") ?? host.querySelector(".view"))!.after(this.bar, this.how);
   }
 
-  /** Begins the world if there is none yet: when it comes into sight, or is used before. */
+  /** Begins the world if there is none yet; called when it becomes visible or is used before that. */
   ensure(): void {
     if (this.live) return;
     this.begin();
     if (this.camera.autoplay && !CALM.matches) this.setPlaying(true);
   }
 
-  /** Begins the world, with what differs from its config. */
+  /** Begins the world, with the changes to its config. */
   begin(seed = this.seed): void {
     this.live?.close();
     this.finish();
@@ -116,7 +116,7 @@ export class Stage {
     this.onBegin();
   }
 
-  /** Begins again as the scene's config and the first seed have it. */
+  /** Begins again with the scene's config and the first seed. */
   reset(): void {
     this.changes.clear();
     this.setPlaying(false);
@@ -124,13 +124,13 @@ export class Stage {
     this.host.closest("section")!.dispatchEvent(new CustomEvent("reset"));
   }
 
-  /** Why a value of a setting is refused, or "". */
+  /** The reason why a value of a setting is refused, or "". */
   refuses(path: string, value: string): string {
     const setting = this.setting(path);
     return setting ? refusal(setting, value) : `${path}: is no setting that this scene can change`;
   }
 
-  /** Another value of a setting, for the next world. Returns why it is refused, or "". */
+  /** Changes settings of the next world. Returns the reason if the value is refused, or "". */
   set(paths: string[], value: string): string {
     for (const path of paths) {
       const wrong = this.refuses(path, value);
@@ -162,7 +162,7 @@ export class Stage {
     this.play.setAttribute("aria-pressed", String(moves));
   }
 
-  /** Runs to a step as fast as it can; resolves when it is there and its digest is known, or when it cannot go on. */
+  /** Runs to a step as fast as possible. Resolves once the world is there and its digest is known, or if it cannot continue. */
   runTo(step: number, wanted = ""): Promise<void> {
     this.ensure();
     this.setPlaying(false);
@@ -175,7 +175,7 @@ export class Stage {
     });
   }
 
-  /** Ends a run to a step where it is. */
+  /** Stops a run to a step at the current step. */
   stop(): void {
     this.wanted = "";
     this.finish();
@@ -185,12 +185,12 @@ export class Stage {
     return this.goal !== undefined;
   }
 
-  /** The step that it runs to; -1 if to none. */
+  /** The step to which the world is running; -1 if there is none. */
   get aim(): number {
     return this.goal?.step ?? -1;
   }
 
-  /** Where it is. */
+  /** The current place, for a link. */
   place(): Place {
     return { scene: this.camera.scene, seed: this.seed, step: this.live.last, digest: this.live.digest(), changes: this.changes, notes: this.notes };
   }
@@ -199,7 +199,7 @@ export class Stage {
     return this.live.lives.get(id);
   }
 
-  /** Once for each picture of the page. */
+  /** Advances and draws; called for every animation frame. */
   picture(): void {
     if (this.near) this.ensure();
     if (!this.live) return;
@@ -209,10 +209,10 @@ export class Stage {
     if (this.seen) this.draw();
     if (performance.now() < this.wordsDue) return;
     this.wordsDue = performance.now() + WORDS_MS;
-    this.words(); // also where the arena is out of sight: a chart, a button or an answer may be in it
+    this.words(); // even if the arena is off screen, since a chart, a button or an answer may be visible
   }
 
-  /** Draws the newest moment, wherever the arena is. */
+  /** Draws the newest moment, whether or not the arena is visible. */
   show(): void {
     this.frame = this.live.around(Infinity).before;
     this.draw();
@@ -230,14 +230,14 @@ export class Stage {
     this.pictures++;
   }
 
-  /** Pixels of the canvas of a place in the world. */
+  /** The pixel of the canvas at a place in the world. */
   at(x: number, y: number): [number, number] {
     const box = this.ink.canvas.getBoundingClientRect();
     const [px, py] = this.arena.scene.toPage(x, y);
     return [px - box.left, py - box.top];
   }
 
-  /** Goes on to its goal, or, if it plays, by the steps of a picture. */
+  /** Advances toward the goal or, if the world plays, by the steps of one picture. */
   move(): void {
     const { live, goal } = this;
     if (goal) {
@@ -252,17 +252,17 @@ export class Stage {
     else live.look();
   }
 
-  /** Goes on to its goal while the page is hidden, and has no pictures to go on by. */
+  /** Advances toward the goal while the page is hidden and has no animation frames. */
   unseen(): void {
     if (document.hidden && this.goal) this.move();
   }
 
-  /** Some steps, as the person who drives it tells; a scene may do it in another way. */
+  /** Runs some steps with the actions of the reader; scenes may override it. */
   advance(steps: number): boolean {
     return this.live.advance(steps, PICTURE_MS, { trace: this.camera.trace, actions: this.actions });
   }
 
-  /** How many of the steps that are left to a goal it runs at once; a scene that steers on the way takes fewer. */
+  /** How many of the steps left to a goal to run at once; a scene that steers in between takes fewer. */
   ahead(left: number): number {
     return left;
   }
@@ -290,18 +290,18 @@ export class Stage {
     this.onWords();
   }
 
-  /** Copies the link. A world that plays rests first, since only then it has a digest. */
+  /** Copies the link. Pauses the world first, since a running world has no digest. */
   private async copy(): Promise<void> {
     const { live } = this;
     if (this.playing && !this.running) await this.runTo(live.last);
-    if (live !== this.live) return; // another began since
+    if (live !== this.live) return; // another world has begun in the meantime
     const address = addressOf(this.place());
     history.replaceState(null, "", address);
     copyAddress(this.same);
     const config = button("Save the config", "link");
     config.addEventListener("click", () => save(`${this.world.name}.toml`, this.world.toml));
     const same = element("code", { text: command(this.world, this.changes, this.seed, this.live.last) });
-    const said = this.edited ? "You steered, so only the link has this world. It began as " : "The same world on a command line: ";
+    const said = this.edited ? "You steered, so only the link reproduces this world. It began as " : "The same world on a command line: ";
     this.how.replaceChildren(said, same, " ", config);
     this.how.hidden = false;
   }

@@ -1,20 +1,20 @@
-// How a person steers: keys or a place to go to, as one of a few commands; and a record of them that fits into a link.
+// How the reader steers: keys, or a place to go to, become one of a few commands, and a record of them fits into a link.
 import type { Actions } from "../live.worker";
 
-const FULL = 6; // before the sigmoid: 0.998 of the most force
-const MOST = 2000; // runs that a link keeps
+const FULL = 6; // before the sigmoid: 0.998 of the maximum force
+const MOST = 2000; // the most runs of one command that fit into a link
 
-/** Each command: what the left and the right motor do, from 1 (ahead) over 0 to -1 (back). */
+/** The commands, with the direction of the left and the right motor: 1 (ahead), 0 or -1 (back). */
 const MOTORS: Record<string, [number, number]> = { ".": [0, 0], f: [1, 1], b: [-1, -1], l: [-1, 1], r: [1, -1], q: [0, 1], e: [1, 0] };
 
-/** Actions of each command, for motors of these limits: at rest no force acts. */
+/** The actions of each command for motors with these limits; at rest no force acts. */
 export function commandsOf(least: number, most: number): Record<string, Actions> {
   const rest = Math.log(-least / most); // sigmoid(rest) = -least / (most - least)
   const action = (way: number) => (way > 0 ? FULL : way < 0 ? -FULL : rest);
   return Object.fromEntries(Object.entries(MOTORS).map(([name, [left, right]]) => [name, [action(left), action(right)]]));
 }
 
-/** The command of the keys that are held. */
+/** The command for the keys held down. */
 export function ofKeys(keys: Set<string>): string {
   const [up, down, left, right] = ["ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight"].map((key) => keys.has(key));
   if (left === right) return up === down ? "." : up ? "f" : "b";
@@ -22,7 +22,7 @@ export function ofKeys(keys: Set<string>): string {
   return left ? "l" : "r";
 }
 
-/** The command that brings an agent to a place: turn until it lies ahead, then go. Heading 0 is up, positive is left. */
+/** The command that moves an agent toward a place: turn until the place is ahead, then go. Heading 0 is up; positive is left. */
 export function toward(x: number, y: number, heading: number, goal: [number, number]): string {
   const [dx, dy] = [goal[0] - x, goal[1] - y];
   const off = Math.atan2(-dx, dy) - heading;
@@ -32,7 +32,7 @@ export function toward(x: number, y: number, heading: number, goal: [number, num
   return turn > 0 ? "l" : "r";
 }
 
-/** Commands with the number of steps of each, as in "f40l3f12". */
+/** A sequence of commands with the number of steps of each, as in "f40l3f12". */
 export class Track {
   readonly runs: [string, number][] = [];
 
@@ -42,7 +42,7 @@ export class Track {
     else if (steps > 0) this.runs.push([command, steps]);
   }
 
-  /** Whether it is short enough for a link. */
+  /** Whether the track is short enough for a link. */
   get fits(): boolean {
     return this.runs.length <= MOST;
   }

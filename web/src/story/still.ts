@@ -1,4 +1,4 @@
-// The picture of a scene, shown in its arena if the world cannot run. A single file holds none.
+// The picture of a scene, shown in its arena if the world cannot run. A single-file page has none.
 import { element } from "../element";
 import { isSingleFile } from "../files";
 
