@@ -6,7 +6,7 @@ import type { Source } from "./source";
 
 const KEYS: [string, string][] = [
   ["Space", "plays and pauses"],
-  ["← →", "one step back, on; with Shift ten"],
+  ["← →", "one step back or forward; with Shift, ten steps"],
   ["Home End", "the first and the last step"],
   ["+ −", "faster and slower"],
   ["N", "chooses the next agent, Esc none"],
@@ -20,8 +20,8 @@ const PLOTS: [string, string][] = [
   ["Move over a plot", "shows the values at a step, in all plots"],
   ["Click", "goes to the step"],
   ["Drag", "zooms in time, in all plots; a double click shows all steps again"],
-  ["← → Home End", "on a plot that has the focus: the values of another row; Enter goes to it"],
-  ["+ −", "there: zoom in and out"],
+  ["← → Home End", "on a focused plot: the values of another row; Enter goes to its step"],
+  ["+ −", "on a focused plot: zoom in and out"],
 ];
 
 const TOUCH = "Click or tap an agent to choose it. Drag to move; turn the wheel or pinch to zoom.";
@@ -43,7 +43,7 @@ function thisWorld(source: Source): HTMLElement[] {
   if (source instanceof Live) {
     const same = command(source.world, source.changes, source.seed, source.last);
     const later = source.acts.map(({ step, path, value }) => element("p", { text: `At step ${show(step)}: ${path} = ${value}` }));
-    const said = source.edited ? "It was changed by hand: no command makes the same world. It began as" : "This command makes the same world, with the same digest:";
+    const said = source.edited ? "It was changed by hand, so no command reproduces it. It began as" : "This command reproduces the world, with the same digest:";
     const rounding = source.fused
       ? "The engine here fuses multiply-adds, as processors with AVX2 and AVX-512 do: digests are those of the command there."
       : "This browser does not fuse multiply-adds: put HEDON_BACKEND=portable before the command to get the digest of this page.";

@@ -9,7 +9,7 @@ export class Notice {
 
   /** Reports that a source has failed or ended, with buttons to begin again with a seed or to look back. */
   about(source: Source, now: number, lost: boolean, again: (live: Live, seed: number) => void, back: () => void): void {
-    if (lost) this.show("The browser took the graphics away. They come back by themselves, or with the page.", { "Load the page again": () => location.reload() });
+    if (lost) this.show("The browser has taken the graphics away. They return by themselves, or when the page is loaded again.", { "Load the page again": () => location.reload() });
     else if (source instanceof Live && source.error) this.show(source.error, { "Begin again": () => again(source, source.seed) });
     else if (source instanceof Live && source.over && now >= source.last) {
       const begin = { "Begin again": () => again(source, source.seed), "Another seed": () => again(source, source.seed + 1) };

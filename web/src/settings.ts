@@ -93,7 +93,7 @@ export class Settings {
       element("label", { class: "setting" }, element("span", { text: "seed" }), this.seed),
       this.restart,
       this.problem,
-      element("p", { text: "A change acts at once where a world that lives can take it. The others wait for a new start.", class: "quiet" }),
+      element("p", { text: "A change takes effect at once if the running world can take it. Other changes need a new start.", class: "quiet" }),
       search,
       list,
     );

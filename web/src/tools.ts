@@ -25,7 +25,7 @@ export class Tools {
     const live = source instanceof Live ? source : undefined;
     this.live = live;
     if (!live) {
-      this.host.replaceChildren(heading, element("p", { text: "What was recorded cannot be changed: choose a live world above." }), element("h3", { text: "digest" }), this.digest);
+      this.host.replaceChildren(heading, element("p", { text: "A recorded world cannot be changed. Choose a live world above." }), element("h3", { text: "digest" }), this.digest);
       return;
     }
     this.refused.setAttribute("role", "alert");
@@ -38,7 +38,7 @@ export class Tools {
       element("h3", { text: "by hand" }),
       element("label", {}, "A click in the arena ", this.edit),
       this.refused,
-      element("p", { text: "An added agent has a founder's energy, new genes and a new network. After a change by hand no config gives this world.", class: "quiet" }),
+      element("p", { text: "An added agent has a founder's energy, new genes and a new network. After a change by hand, no config reproduces this world.", class: "quiet" }),
       element("h3", { text: "snapshot" }),
       element("div", { class: "row" }, keep, this.back),
       this.kept,
@@ -95,7 +95,7 @@ export class Tools {
       if (!wrong.textContent) beside(chosen(), value.value);
     });
     const end = this.button("twin-end", "One world again", alone);
-    const said = "The world begins again, and beside it the same one, of the same seed, with this setting changed.";
+    const said = "The world begins again, next to a copy of it with the same seed and this setting changed.";
     return [element("p", { text: said, class: "quiet" }), choice, element("div", { class: "row" }, value, begin, end), wrong];
   }
 

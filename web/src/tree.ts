@@ -143,8 +143,8 @@ export class Tree {
   private tell(): void {
     const life = this.known.get(this.chosen)?.life;
     this.said.textContent = life
-      ? `${counted(this.bearers.size, "agent")} of ${show(this.frame!.id.length)} that live: agent ${life.id}, born at step ${show(life.birth)} in generation ${life.generation}, and who descends from it. They are ringed in the arena.`
-      : "Click a line to see who bears it: its agent, and all that descend from it.";
+      ? `${counted(this.bearers.size, "agent")} of ${show(this.frame!.id.length)} that live: agent ${life.id}, born at step ${show(life.birth)} in generation ${life.generation}, and its descendants. They are ringed in the arena.`
+      : "Click a line to ring its agent and all its living descendants.";
   }
 
   private redraw(): void {
