@@ -40,7 +40,7 @@ def _answers(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable], r
     tests, scores = (_rows(tables.get(name), worlds[0].condition) for name in ("drift", "drift_world"))
     if tests.is_empty() or scores.is_empty():
         return [UNKNOWN]
-    corrected = tests.filter(pl.col("p_holm").is_not_null() & (pl.col("test") != "marker"))  # another family of tests
+    corrected = tests.filter(pl.col("p_holm").is_not_null() & (pl.col("test") != "recorded"))  # another family of tests
     seconds = _seconds(worlds, runs)
     subject = _who(scores, worlds)
     sentences = [] if worlds[0].own.learning.policy == "ppo" else [UNLEARNED]

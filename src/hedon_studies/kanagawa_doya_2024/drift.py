@@ -16,7 +16,7 @@ from hedon_studies.kanagawa_doya_2024.condition import PAPER_SCALE, PLACES, POIS
 CONDITIONS = (*SIZES, *PLACES[1:], POOR, POISON)
 REWARDS = {"w_normal": "weight of food", "w_action": "weight of action"}
 """The weights that all conditions have."""
-MARKER = {"neutral_1": "neutral gene"}
+NEUTRAL = {"neutral_1": "neutral gene"}
 ALL = "all conditions"
 _BOUNDS = ("low", "high", "drift_low", "drift_high")
 
@@ -65,7 +65,7 @@ def make_drift(
     question = "Which weights went further, or more in one direction, than drift?"
     if groups[ALL]:
         means = {row["weight"]: row for row in tests[ALL] if row["test"] == "direction"}
-        figure = hedon.figure.draw_scores(_points(scores), {**rewards, **MARKER}, means)
+        figure = hedon.figure.draw_scores(_points(scores), {**rewards, **NEUTRAL}, means)
         yield NamedFigure(name, question, figure, _DRAWN)
     yield make_table(
         f"{name}_all", "Weights against drift, all conditions", tests.pop(ALL), sentences(_TESTS, _SHARED, note)
@@ -79,10 +79,10 @@ def _test_rows(
     label: str, worlds: Sequence[Sequence[WorldDrift]], rewards: Mapping[str, str]
 ) -> Iterator[dict[str, Any]]:
     """Both tests of each weight, without bounds below five worlds."""
-    names = {**rewards, **MARKER}
+    names = {**rewards, **NEUTRAL}
     matching = [[drift for drift in world if drift.weight in names] for world in worlds]
-    for test in drift_tests(matching, list(rewards), list(MARKER), {}, np.random.default_rng(SEED)):
-        if test.test == "marker":
+    for test in drift_tests(matching, list(rewards), list(NEUTRAL), {}, np.random.default_rng(SEED)):
+        if test.test == "recorded":
             continue
         positive = sum(drift.score > 0 for world in matching for drift in world if drift.weight == test.weight)
         row = {

@@ -104,7 +104,7 @@ def test_selection_is_found(tmp_path: Path) -> None:
     }
     assert found["w_normal", "direction"].p_holm < 0.01
     assert found["w_normal", "direction"].effect > 1
-    assert found["w_normal", "marker"].effect > 0
+    assert found["w_normal", "recorded"].effect > 0
     assert found["neutral_1", "direction"].p > 0.01
     assert np.isnan(found["neutral_1", "direction"].p_holm)
     assert found["w_action", "direction"].p_holm > 0.05
@@ -120,12 +120,12 @@ def test_two_modes_are_a_distance_without_a_direction() -> None:
     assert direction.drift_low < 0 < direction.drift_high
     assert distance.p == pytest.approx(stats.chi2.sf(2 * 9 + 2 * 6.25, 4))
     assert distance.low > 1  # under drift it is 1
-    marker = tests[-1]
-    assert (marker.effect, marker.p) == (2.75, 2 / 16)
+    recorded = tests[-1]
+    assert (recorded.effect, recorded.p) == (2.75, 2 / 16)
 
 
 def scores(values: np.ndarray) -> list[list[WorldDrift]]:
-    """One weight and no marker in as many worlds as there are values."""
+    """One weight and no neutral gene in as many worlds as there are values."""
     return [[WorldDrift("w", 0.0, 0.0, -2, 0, 2, float(v), 1.0)] for v in values]
 
 

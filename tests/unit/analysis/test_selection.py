@@ -22,7 +22,7 @@ def test_the_truth_of_a_log_linear_fitness_is_found() -> None:
     b, trials, slopes = 0.3, 120, []
     for _ in range(trials):
         z = rng.normal(0, [0.8, 1.0, 1.0], (300, 3))
-        z[:, 2] += 0.7 * z[:, 0]  # a marker that rides along: a differential, but no gradient
+        z[:, 2] += 0.7 * z[:, 0]  # a gene that hitchhikes: a differential, but no gradient
         found = selection(cohort(z, rng.poisson(np.exp(b * z[:, 0]))), NAMES, 1000)[:3]
         slopes.append([row["gradient"] for row in found] + [found[2]["differential"]])
     np.testing.assert_allclose(np.mean(slopes, axis=0), [b, 0, 0, b * 0.7 * 0.64], atol=0.03)

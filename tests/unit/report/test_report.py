@@ -30,7 +30,7 @@ NAMES = ["summary.json", "report.html", "report.md", "analysis.json", *(f"{name}
             {"intervals": 5, "worlds": 3, "extinct": 0, "food_kinds": ("normal", "poor", "poison"), "neutral_count": 3},
             id="three kinds, one extinct",
         ),
-        pytest.param({"intervals": 2, "worlds": 12, "neutral_count": 0}, id="many, no marker", marks=pytest.mark.long),
+        pytest.param({"intervals": 2, "worlds": 12, "neutral_count": 0}, id="many, 0 neutral", marks=pytest.mark.long),
     ],
 )
 def test_every_run_has_a_report(tmp_path: Path, options: dict) -> None:

@@ -29,7 +29,7 @@ def told(analysis: Analysis, score: float, means: tuple[float, ...] = (0.5,)) ->
     outcome = {"test": "direction", "worlds": len(means), "effect": score, "p": p, "p_holm": min(6 * p, 1.0)}
     other = {"condition": condition, "weight": "another", "worlds": 1, "effect": 0.0, "p": 1.0, "p_holm": 1.0}
     others = [
-        other | {"test": test} for test in ("direction", "distance", "held", "distance", "held", "marker", "marker")
+        other | {"test": test} for test in ("direction", "distance", "held", "distance", "held", "recorded", "recorded")
     ]
     ends = [
         row | {"mean": mean, "null_low": -0.2, "null_high": 0.3, "generation": 8.26 + 2 * i}

@@ -2,8 +2,8 @@
 
 There are two controls. The *walk*: in each world, the mean weight of the agents alive at the end is compared with
 neutral genes that mutate along the same pedigree (`descent.walk`), and `statistic.drift` tests its score among them.
-The *marker*: whether a weight strays further from its start than the recorded neutral genes with its law in the same
-worlds; under drift, it is as likely to rank first among them as last.
+The *recorded neutral genes* of the same worlds: the test is whether a weight strays further from its start than those
+with its founders and mutations; under drift, it is as likely to rank first among them as last.
 """
 
 import math
@@ -57,10 +57,10 @@ _KNOWN: WeakKeyDictionary[WorldRecord, dict[int | None, list[WorldDrift]]] = Wea
 
 @dataclass(frozen=True)
 class DriftTest(ScoreTest):
-    """One weight of one condition tested against one control: walks, by its scores among them, or "marker".
+    """One weight of one condition tested against one control: walks, by its scores among them, or "recorded".
 
-    For "marker" the effect is the mean of |displacement of the weight| − |displacement of the neutral genes|, in units
-    of the weight, and p refers to the sum over worlds of its rank among them. Only neutral genes with the weight's
+    For "recorded" the effect is the mean of |displacement of the weight| − |displacement of the neutral genes|, in the
+    weight's units, and p refers to the sum over worlds of its rank among them. Only neutral genes with the weight's
     founders and mutations count; without any, this test is omitted. p_holm is corrected for all reward weights and all
     tests against walks, or for all reward weights against neutral genes; it is NaN for neutral genes, which are shown
     as a check of the method.
@@ -154,7 +154,7 @@ def _against_neutral(
         ties = np.count_nonzero(controls == displacement)
         ranks.append(1 + np.count_nonzero(controls < displacement) + int(rng.integers(0, ties + 1)))
     p = rank_sum_p(ranks, [len(neutral) + 1] * len(ranks)) if ranks else NAN
-    return DriftTest("marker", len(excess), *mean_bounds(excess), p, weight=name)
+    return DriftTest("recorded", len(excess), *mean_bounds(excess), p, weight=name)
 
 
 def _displacement(result: WorldDrift) -> float:

@@ -32,7 +32,7 @@ def drift(conditions: Conditions) -> list[ResultTable]:
         "direction: mean score against neutral genes walked down the recorded pedigree, in standard deviations of "
         "drift; drift_low and drift_high are its bounds by the spread of drift itself, as p takes it. distance and "
         "held: root mean square score, 1 under drift, with the chance of a larger one (distance) or of a smaller one "
-        "(held). A weight that cannot change has no test. marker: how much further the weight moved than the neutral "
+        "(held). A weight that cannot change has no test. recorded: how much further the weight moved than the neutral "
         "genes of its founders and mutations, if there are any. p_holm is corrected for all reward weights and tests "
         "of one control; neutral genes are there as a check."
     )
