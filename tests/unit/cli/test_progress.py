@@ -53,6 +53,16 @@ def test_a_line_within_a_window_says_of_which_step_its_numbers_are():
     assert "seed 1: 3 alive" in end
 
 
+def test_several_worlds_share_a_line_of_progress():
+    stream = io.StringIO()
+    display = RunDisplay(Console(file=stream), Columns(("normal",), 0), (1, 2))
+    display.update(Moment(0, WINDOW, 100 * WINDOW, 5.0, (ROW, ROW), (None, 700), WINDOW))
+    head, first, second = stream.getvalue().splitlines()
+    assert head == "step 1,000 of 100,000  200 steps/s  8 min 15 s left"
+    assert first.startswith("  seed 1: 3 alive, 0 births, 0 deaths, energy 1.00")
+    assert second == "  seed 2: extinct at step 700"
+
+
 def test_a_species_that_is_gone_has_no_energy():
     """The world lives on: its other species has a line of its own."""
     nan = float("nan")
@@ -63,8 +73,8 @@ def test_a_species_that_is_gone_has_no_energy():
     stream, file = io.StringIO(), io.StringIO()
     RunDisplay(Console(file=stream), columns, (1,)).update(moment)
     lines = stream.getvalue().splitlines()
-    assert "seed 1 prey: 3 alive" in lines[0]
-    assert lines[1].endswith("seed 1 hunter: 0 alive, 0 births, 0 deaths")
+    assert "seed 1 prey: 3 alive" in lines[1]
+    assert lines[2].endswith("seed 1 hunter: 0 alive, 0 births, 0 deaths")
     console = Console(file=file, width=140)
     console.print(RunDisplay(console, columns, (1,))._draw(moment, None))
     assert "nan" not in file.getvalue()

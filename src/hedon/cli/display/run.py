@@ -100,13 +100,13 @@ class RunDisplay(Screen):
             self.show(lambda: self._lines(moment, speed), lambda: self._draw(moment, speed))
 
     def _lines(self, moment: Moment, speed: float | None) -> str:
-        """A line for each world."""
+        """The run's progress and its only world in one line, or a line for each of several worlds below it."""
+        worlds = [
+            f"  seed {label}{_when(row, end, moment)}: {_describe(row, end, self._weights)}"
+            for label, row, end in zip(self._labels, moment.rows, moment.extinct, strict=True)
+        ]
         head = _head(moment, speed, "  ")
-        worlds = zip(self._labels, moment.rows, moment.extinct, strict=True)
-        return "\n".join(
-            f"{head}  seed {label}{_when(row, end, moment)}: {_describe(row, end, self._weights)}"
-            for label, row, end in worlds
-        )
+        return head + worlds[0] if len(worlds) == 1 else "\n".join([head, *worlds])
 
     def _draw(self, moment: Moment, speed: float | None) -> Group:
         head = Text(_head(moment, speed, "   "))
