@@ -13,12 +13,12 @@ const ROUNDED = 1e4; // rewards are sums of 7-digit numbers
 /** A part of the panel that is rewritten only if its content changes, so that the focused element keeps the focus. */
 class Part {
   readonly host = element("section");
-  private said = "";
+  private content = "";
 
   fill(...parts: Node[]): void {
-    const said = parts.map((part) => (part instanceof Element ? part.outerHTML : (part.textContent ?? ""))).join("");
-    if (said === this.said) return;
-    this.said = said;
+    const content = parts.map((part) => (part instanceof Element ? part.outerHTML : (part.textContent ?? ""))).join("");
+    if (content === this.content) return;
+    this.content = content;
     this.host.replaceChildren(...parts);
   }
 }
@@ -103,10 +103,10 @@ export class AgentPanel {
 
   /** Fills the folded list of neutral genes; returns false if there are none. */
   private neutral(source: Source, life: Life): boolean {
-    const own = source.layout.species[life.species]!.genes.filter((g) => source.layout.genes[g]!.role === "neutral");
-    this.folded.firstElementChild!.textContent = `${counted(own.length, "neutral gene")}, without effect`;
+    const genes = source.layout.species[life.species]!.genes.filter((g) => source.layout.genes[g]!.role === "neutral");
+    this.folded.firstElementChild!.textContent = `${counted(genes.length, "neutral gene")}, without effect`;
     this.folded.lastElementChild!.replaceChildren(genome(source, life, (gene) => gene.role === "neutral"));
-    return own.length > 0;
+    return genes.length > 0;
   }
 
   private drawLearning(source: Source, life: Life): void {
@@ -196,9 +196,9 @@ function countedUntil(source: Source, life: Life): string {
 
 /** Every gene of its species, as a bar that starts at 0 in the middle. */
 function genome(source: Source, life: Life, wanted: (gene: Gene) => boolean): HTMLElement {
-  const own = source.layout.species[life.species]!.genes.filter((g) => wanted(source.layout.genes[g]!));
-  const limit = Math.max(0.1, ...own.map((g) => Math.abs(life.genome[g]!)).filter(Number.isFinite));
-  const rows = own.map((g): [string, Node] => {
+  const genes = source.layout.species[life.species]!.genes.filter((g) => wanted(source.layout.genes[g]!));
+  const limit = Math.max(0.1, ...genes.map((g) => Math.abs(life.genome[g]!)).filter(Number.isFinite));
+  const rows = genes.map((g): [string, Node] => {
     const [gene, value] = [source.layout.genes[g]!, life.genome[g]!];
     const fill = element("i");
     const share = (50 * Math.abs(value)) / limit;
@@ -265,8 +265,8 @@ function answer(source: Source): HTMLElement[] {
 /** What its rays see now, in words and colors. */
 function seenTitle(source: Source, frame: Frame, at: number): HTMLElement[] {
   const { layout } = source;
-  const found = [...new Set(castRays(source, frame, at).map((ray) => ray.type))].filter((type) => type >= 0);
-  const names = found.map((type) => {
+  const types = [...new Set(castRays(source, frame, at).map((ray) => ray.type))].filter((type) => type >= 0);
+  const names = types.map((type) => {
     const dot = element("b", { text: "■" });
     dot.style.color = typeColor(layout, type) || "var(--wall)";
     return element("span", {}, dot, ` ${layout.types[type]}`);

@@ -68,10 +68,10 @@ export class App {
 
   async open(): Promise<void> {
     for (const speed of SPEEDS) by("speed").append(option(String(speed), `${speed < 1 ? `1/${1 / speed} step` : counted(speed, "step")} per picture`));
-    const told = (await (await fetch("data/page.json")).json()) as { run: boolean; worlds: LiveWorld[] };
-    this.worlds = told.worlds;
+    const page = (await (await fetch("data/page.json")).json()) as { run: boolean; worlds: LiveWorld[] };
+    this.worlds = page.worlds;
     const select = by<HTMLSelectElement>("world");
-    if (told.run) {
+    if (page.run) {
       const index = (await (await fetch("data/run.json")).json()) as { folder: string; seeds: number[] };
       index.seeds.forEach((seed, i) => select.append(option(`run ${i}`, `run ${index.folder}, seed ${seed}`)));
     }
@@ -80,7 +80,7 @@ export class App {
     if (link.threads && link.threads <= MOST_THREADS) this.threads = link.threads;
     const wanted = this.worlds.findIndex((world) => world.source === link.live);
     if (wanted >= 0) select.value = `live ${wanted}`;
-    else if (link.run !== undefined && told.run) select.value = `run ${link.run}`;
+    else if (link.run !== undefined && page.run) select.value = `run ${link.run}`;
     select.addEventListener("change", () => void this.show(select.value));
     await this.show(select.value, link);
     requestAnimationFrame(() => this.picture());

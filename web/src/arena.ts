@@ -97,13 +97,13 @@ export class Arena {
 
   /** The id of the agent at a place in the world, or -1. */
   pick(source: Source, frame: Frame, x: number, y: number): number {
-    let [best, found] = [Infinity, -1];
+    let [best, nearest] = [Infinity, -1];
     for (let i = 0; i < frame.id.length; i++) {
       const radius = bodyOf(source, frame, i).radius + 4 / this.scene.zoom;
       const distance = (frame.x[i]! - x) ** 2 + (frame.y[i]! - y) ** 2;
-      if (distance < Math.min(best, radius * radius)) [best, found] = [distance, frame.id[i]!];
+      if (distance < Math.min(best, radius * radius)) [best, nearest] = [distance, frame.id[i]!];
     }
-    return found;
+    return nearest;
   }
 
   forgetTrails(): void {

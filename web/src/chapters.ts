@@ -16,11 +16,11 @@ export class Chapters {
     this.list.hidden = source.live || marks.length === 0; // a live world keeps only its last moments
     if (this.list.hidden || document.activeElement === this.list) return;
     // A mark may precede the first moment, because the population has rows between two frames.
-    const found = [{ step: source.first, text: "the beginning" }, ...[...marks].sort((a, b) => a.step - b.step)];
-    if (JSON.stringify(found) !== JSON.stringify(this.chapters)) {
-      this.chapters = found;
-      this.list.replaceChildren(...found.map(({ step, text }, i) => option(String(i), `${show(step)}: ${text}`)));
+    const chapters = [{ step: source.first, text: "the beginning" }, ...[...marks].sort((a, b) => a.step - b.step)];
+    if (JSON.stringify(chapters) !== JSON.stringify(this.chapters)) {
+      this.chapters = chapters;
+      this.list.replaceChildren(...chapters.map(({ step, text }, i) => option(String(i), `${show(step)}: ${text}`)));
     }
-    this.list.selectedIndex = Math.max(found.findLastIndex(({ step }) => step <= now), 0);
+    this.list.selectedIndex = Math.max(chapters.findLastIndex(({ step }) => step <= now), 0);
   }
 }

@@ -62,9 +62,9 @@ export class Curves implements Content {
     const { lines } = this;
     const others = this.others.flatMap(() => lines.map(({ color }): uPlot.Series => ({ stroke: color + OTHER, width: 1 })));
     const raw = this.smoothed ? lines.map(({ color }): uPlot.Series => ({ stroke: color + RAW, width: 2 })) : [];
-    const own = lines.map(({ label, color }): uPlot.Series => ({ label, stroke: color, width: 2 }));
+    const main = lines.map(({ label, color }): uPlot.Series => ({ label, stroke: color, width: 2 }));
     const limits = this.band ? ["drift, high", "drift, low"].map((label): uPlot.Series => ({ label, stroke: "#8889", dash: [4, 4] })) : [];
-    return [...others, ...raw, ...own, ...limits];
+    return [...others, ...raw, ...main, ...limits];
   }
 
   bands(): uPlot.Band[] {
@@ -84,15 +84,15 @@ export class Curves implements Content {
       from.step.forEach((each, i) => (out[rows.get(each)!] = values[i]));
       return out;
     };
-    const own = lines.map(({ name }) => fitted(series, name));
+    const columns = lines.map(({ name }) => fitted(series, name));
     const band = this.band?.();
     const nothing = series.step.map(() => null);
     const limits = this.band ? (typeof band === "object" ? [band.high, band.low] : [nothing, nothing]) : [];
     this.table = [
       step,
       ...others.flatMap((each) => lines.map(({ name }) => place(each.series, smooth(fitted(each.series, name), choice.window)))),
-      ...(this.smoothed ? own.map((values) => place(series, values)) : []),
-      ...own.map((values) => place(series, smooth(values, choice.window))),
+      ...(this.smoothed ? columns.map((values) => place(series, values)) : []),
+      ...columns.map((values) => place(series, smooth(values, choice.window))),
       ...limits.map((values) => place(series, values)),
     ];
     return this.table;

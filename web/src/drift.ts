@@ -120,14 +120,14 @@ export function drift(source: Source, species: Species, gene: number): Band | st
   const stale = (each: Walks) => each.rewinds !== lives.rewinds || (!source.live && each.size !== lives.size) || each.band.low.length > series.step.length;
   if (!walks || stale(walks)) known.set(key, (walks = new Walks(law, layout.species.indexOf(species), lives)));
   walks.advance(lives, series, series.get(columnOf(layout, species, "alive")), source.relawed);
-  const nothing = lives.size > 0 && walks.band.low.length > 0 && walks.band.low.every((each) => each === null);
-  return nothing ? (recorded(source, species, gene) ?? "No band: the parents of some agents are not known.") : walks.band;
+  const empty = lives.size > 0 && walks.band.low.length > 0 && walks.band.low.every((each) => each === null);
+  return empty ? (recorded(source, species, gene) ?? "No band: the parents of some agents are not known.") : walks.band;
 }
 
 /** The band from recorded neutral genes, if enough of them have the same initial law and mutation as the gene. */
 function recorded({ layout, series }: Source, species: Species, gene: number): Band | undefined {
-  const own = JSON.stringify(species.laws[gene]);
-  const alike = species.genes.filter((g, i) => layout.genes[g]!.role === "neutral" && JSON.stringify(species.laws[i]) === own);
+  const law = JSON.stringify(species.laws[gene]);
+  const alike = species.genes.filter((g, i) => layout.genes[g]!.role === "neutral" && JSON.stringify(species.laws[i]) === law);
   if (alike.length < ENOUGH) return undefined;
   const columns = alike.map((g) => series.get(columnOf(layout, species, `${layout.genes[g]!.name}_mean`)));
   const start = species.laws[gene]!.mean;

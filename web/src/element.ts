@@ -7,19 +7,19 @@ export function element<K extends keyof HTMLElementTagNameMap>(
   options: { text?: string; class?: string; title?: string } = {},
   ...children: Child[]
 ): HTMLElementTagNameMap[K] {
-  const made = document.createElement(name);
-  if (options.text !== undefined) made.textContent = options.text;
-  if (options.class) made.className = options.class;
-  if (options.title) made.title = options.title;
-  made.append(...children);
-  return made;
+  const node = document.createElement(name);
+  if (options.text !== undefined) node.textContent = options.text;
+  if (options.class) node.className = options.class;
+  if (options.title) node.title = options.title;
+  node.append(...children);
+  return node;
 }
 
 /** The element with this id. Throws if the page has none. */
 export function by<T extends HTMLElement>(id: string): T {
-  const found = document.getElementById(id);
-  if (!found) throw new Error(`the page has no #${id}`);
-  return found as T;
+  const node = document.getElementById(id);
+  if (!node) throw new Error(`the page has no #${id}`);
+  return node as T;
 }
 
 export function option(value: string, text: string): HTMLOptionElement {

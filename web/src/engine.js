@@ -29,16 +29,16 @@ export class EngineError extends Error {}
 /** The same functions, with traps turned into error messages. @param {Record<string, CallableFunction>} exports */
 function explained(exports) {
   /** @param {CallableFunction} call */
-  const telling = (call) => (/** @type {unknown[]} */ ...given) => {
+  const guarded = (call) => (/** @type {unknown[]} */ ...args) => {
     try {
-      return call(...given);
+      return call(...args);
     } catch (error) {
       const thread = exports.hedon_stopped() || 1;
       const why = error instanceof Error ? error.message : String(error);
       throw new Error(`the engine stopped in its thread ${thread} (${why}): begin the world again`);
     }
   };
-  return Object.fromEntries(Object.entries(exports).map(([name, each]) => [name, typeof each === "function" ? telling(each) : each]));
+  return Object.fromEntries(Object.entries(exports).map(([name, each]) => [name, typeof each === "function" ? guarded(each) : each]));
 }
 
 const PAGE = 65536; // bytes
@@ -55,10 +55,10 @@ const SHARED_MEMORY = [3, ...new TextEncoder().encode("env"), 6, ...new TextEnco
  */
 export async function compile(bytes, shared) {
   if (shared) return WebAssembly.compile(bytes);
-  const own = bytes.slice();
-  const at = own.findIndex((_, i) => SHARED_MEMORY.every((byte, k) => own[i + k] === byte));
-  own[at + SHARED_MEMORY.length - 1] = 1;
-  return WebAssembly.compile(own);
+  const copy = bytes.slice();
+  const at = copy.findIndex((_, i) => SHARED_MEMORY.every((byte, k) => copy[i + k] === byte));
+  copy[at + SHARED_MEMORY.length - 1] = 1;
+  return WebAssembly.compile(copy);
 }
 
 /** @param {boolean} shared @param {number} bytes the maximum size */
@@ -316,10 +316,10 @@ export class Engine {
     const bytes = new TextEncoder().encode(name);
     const at = this.exports.hedon_path(bytes.length) >>> 0;
     new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
-    const found = this.exports.hedon_view() >>> 0;
-    if (found === 0) return undefined;
+    const address = this.exports.hedon_view() >>> 0;
+    if (address === 0) return undefined;
     const place = /** @type {[number, number, number, number, number, number]} */ ([
-      ...new Int32Array(this.memory.buffer, found, 6),
+      ...new Int32Array(this.memory.buffer, address, 6),
     ]);
     place[0] >>>= 0;
     this.known.set(name, place);

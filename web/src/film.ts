@@ -89,8 +89,8 @@ export class Film {
       return known;
     }
     this.kept.set(file, "asked");
-    void this.load(at).then((found) => {
-      this.kept.set(file, found);
+    void this.load(at).then((frames) => {
+      this.kept.set(file, frames);
       for (const [other, frames] of this.kept) {
         if (this.kept.size <= KEPT_PARTS) break;
         if (frames !== "asked" && other !== file) this.kept.delete(other);

@@ -114,7 +114,7 @@ class Parser {
   /** One comparison, or a chain such as `100 < age <= 500`. */
   private comparison(): Filter {
     let left = this.operand();
-    let found: Filter | undefined;
+    let filter: Filter | undefined;
     for (;;) {
       const sign = this.tokens[this.at];
       const compare = sign && COMPARE[sign.text];
@@ -122,14 +122,14 @@ class Parser {
       this.at++;
       const [a, b] = [left, this.operand()];
       this.check(a, sign.text, b);
-      const [before, words] = [found, a.measure?.words ?? b.measure?.words];
+      const [before, words] = [filter, a.measure?.words ?? b.measure?.words];
       const side = ({ measure, number, word }: Operand): ((value: (measure: Measure) => number) => number) => {
         if (measure) return (value) => value(measure);
         const fixed = word === undefined ? number : words!.indexOf(word);
         return () => fixed;
       };
       const [x, y] = [side(a), side(b)];
-      found = (value) => {
+      filter = (value) => {
         const earlier = before ? before(value) : true;
         const [first, second] = [x(value), y(value)];
         if (earlier !== true || Number.isNaN(first) || Number.isNaN(second)) return earlier === false ? false : undefined;
@@ -137,7 +137,7 @@ class Parser {
       };
       left = b;
     }
-    if (found) return found;
+    if (filter) return filter;
     const name = left.measure?.name ?? left.word ?? show(left.number);
     throw new FilterError(`“${name}” has to be compared with something, as in: ${left.measure && !left.measure.words ? name : "age"} > 100`);
   }

@@ -43,11 +43,11 @@ function thisWorld(source: Source): HTMLElement[] {
   if (source instanceof Live) {
     const same = command(source.world, source.changes, source.seed, source.last);
     const later = source.acts.map(({ step, path, value }) => element("p", { text: `At step ${show(step)}: ${path} = ${value}` }));
-    const said = source.edited ? "It was changed by hand, so no command reproduces it. It began as" : "This command reproduces the world, with the same digest:";
+    const intro = source.edited ? "It was changed by hand, so no command reproduces it. It began as" : "This command reproduces the world, with the same digest:";
     const rounding = source.fused
       ? "The engine here fuses multiply-adds, as processors with AVX2 and AVX-512 do: digests are those of the command there."
       : "This browser does not fuse multiply-adds: put HEDON_BACKEND=portable before the command to get the digest of this page.";
-    lines.push(element("p", { text: said }), element("code", { text: same }), ...later, element("p", { text: `${rounding} It runs in ${counted(source.threads, "thread")}, which changes no result.` }));
+    lines.push(element("p", { text: intro }), element("code", { text: same }), ...later, element("p", { text: `${rounding} It runs in ${counted(source.threads, "thread")}, which changes no result.` }));
   }
   if (source.digest()) lines.push(element("p", { text: `Digest of the state: ${source.digest()}` }));
   return lines;

@@ -17,8 +17,8 @@ export function verdict(windows: Earned[], length: number): string {
   const mean = (part: number[]) => part.reduce((sum, each) => sum + each, 0) / part.length;
   const [early, late] = [mean(all.slice(0, half)), mean(all.slice(-half))];
   const spread = Math.sqrt(mean(all.map((each) => (each - mean(all)) ** 2)));
-  const said = Math.abs(late - early) < spread / 2 ? "about as much as" : late > early ? "more than" : "less than";
-  return `Later half: ${show(late)} per window, ${said} in the first half (${show(early)}).`;
+  const comparison = Math.abs(late - early) < spread / 2 ? "about as much as" : late > early ? "more than" : "less than";
+  return `Later half: ${show(late)} per window, ${comparison} in the first half (${show(early)}).`;
 }
 
 export class LearningChart {

@@ -34,20 +34,20 @@ const EYE: Part = ["circle", { cy: -3, r: 1.4, fill: "#0d0d0d" }];
 /** The signs of a world with their meanings, including those of the chosen agent if there is one. */
 function signs(source: Source, arena: Arena, chosen: boolean): [SVGSVGElement, string][] {
   const { layout } = source;
-  const found: [SVGSVGElement, string][] = layout.foods.map((food) => [sign(disc(4.5, food.color)), `food ${food.name}`]);
-  found.push([sign(disc(6.5, BODY), MOUTH, EYE), "agent: red mouth, dark dot ahead"]);
-  if (layout.species.length > 1) layout.species.forEach(({ name, color }, i) => found.push(i === 0 ? [sign(disc(6, BODY)), `${name}: no ring`] : [sign(disc(5, BODY), ring(7, color)), name]));
-  found.push([sign(ring(5, "--quiet", 2.5)), "not known"], [sign(line("--wall")), "wall"]);
-  if (source.obstacles.length > 0) found.push([sign(square(layout.obstacle_color)), "obstacle"]);
-  if (layout.species.some((each) => each.smells.length > 0)) found.push([sign(["circle", { r: 8, fill: "--quiet", opacity: 0.35 }]), "where it is smelled"]);
-  if (arena.marked.size > 0) found.push([sign(disc(4, BODY), ring(7, "--branch")), "of the chosen branch of the tree"]);
-  if (arena.picked.size > 0) found.push([sign(disc(4, BODY), ring(7, "--picked")), "picked out by filter or rectangle; at most 20 have trails and rays"]);
-  if (!chosen) return found;
-  found.push([sign(disc(4, BODY), ring(7, "--mark")), "chosen agent"], [sign(disc(4, BODY), ring(7, "--kin")), "its near kin"]);
-  if (arena.showRays) found.push([sign(line("--wall"), ["circle", { cx: 7, cy: -4, r: 2.2, fill: "--wall" }]), "ray, in the color of what it sees"]);
-  if (arena.showTrail) found.push([sign(["path", { d: "M-8 5 Q-2 -8 2 0 T8 -5", fill: "none", stroke: "--mark", "stroke-width": 1.6 }]), "where it came from"]);
-  if (layout.species.some((each) => each.smells.length > 0)) found.push([sign(disc(2.5, "--mark")), "nose"]);
-  return found;
+  const entries: [SVGSVGElement, string][] = layout.foods.map((food) => [sign(disc(4.5, food.color)), `food ${food.name}`]);
+  entries.push([sign(disc(6.5, BODY), MOUTH, EYE), "agent: red mouth, dark dot ahead"]);
+  if (layout.species.length > 1) layout.species.forEach(({ name, color }, i) => entries.push(i === 0 ? [sign(disc(6, BODY)), `${name}: no ring`] : [sign(disc(5, BODY), ring(7, color)), name]));
+  entries.push([sign(ring(5, "--quiet", 2.5)), "not known"], [sign(line("--wall")), "wall"]);
+  if (source.obstacles.length > 0) entries.push([sign(square(layout.obstacle_color)), "obstacle"]);
+  if (layout.species.some((each) => each.smells.length > 0)) entries.push([sign(["circle", { r: 8, fill: "--quiet", opacity: 0.35 }]), "where it is smelled"]);
+  if (arena.marked.size > 0) entries.push([sign(disc(4, BODY), ring(7, "--branch")), "of the chosen branch of the tree"]);
+  if (arena.picked.size > 0) entries.push([sign(disc(4, BODY), ring(7, "--picked")), "picked out by filter or rectangle; at most 20 have trails and rays"]);
+  if (!chosen) return entries;
+  entries.push([sign(disc(4, BODY), ring(7, "--mark")), "chosen agent"], [sign(disc(4, BODY), ring(7, "--kin")), "its near kin"]);
+  if (arena.showRays) entries.push([sign(line("--wall"), ["circle", { cx: 7, cy: -4, r: 2.2, fill: "--wall" }]), "ray, in the color of what it sees"]);
+  if (arena.showTrail) entries.push([sign(["path", { d: "M-8 5 Q-2 -8 2 0 T8 -5", fill: "none", stroke: "--mark", "stroke-width": 1.6 }]), "where it came from"]);
+  if (layout.species.some((each) => each.smells.length > 0)) entries.push([sign(disc(2.5, "--mark")), "nose"]);
+  return entries;
 }
 
 export class Legend {

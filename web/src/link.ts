@@ -19,29 +19,29 @@ function whole(text: string | null): number | undefined {
 }
 
 export function readLink(text: string): Link {
-  const said = new URLSearchParams(text);
-  const pairs = said.getAll("set").filter((each) => each.indexOf("=") > 0);
-  const view = said.get("view")?.split(",").map(Number);
+  const params = new URLSearchParams(text);
+  const pairs = params.getAll("set").filter((each) => each.indexOf("=") > 0);
+  const view = params.get("view")?.split(",").map(Number);
   return {
-    live: said.get("live") ?? undefined,
-    run: whole(said.get("world")),
-    seed: whole(said.get("seed")),
-    threads: whole(said.get("threads")),
-    step: whole(said.get("step")),
-    agent: whole(said.get("agent")),
-    color: said.get("color") ?? undefined,
-    filter: said.get("filter") ?? undefined,
+    live: params.get("live") ?? undefined,
+    run: whole(params.get("world")),
+    seed: whole(params.get("seed")),
+    threads: whole(params.get("threads")),
+    step: whole(params.get("step")),
+    agent: whole(params.get("agent")),
+    color: params.get("color") ?? undefined,
+    filter: params.get("filter") ?? undefined,
     view: view?.length === 3 && view.every(Number.isFinite) && view[2]! > 0 ? (view as View) : undefined,
     changes: new Map(pairs.map((each) => [each.slice(0, each.indexOf("=")), each.slice(each.indexOf("=") + 1)])),
   };
 }
 
 export function writeLink(link: Link): string {
-  const said = new URLSearchParams();
+  const params = new URLSearchParams();
   const { changes, view, run, ...rest } = link;
-  if (run !== undefined) said.set("world", String(run));
-  for (const [name, value] of Object.entries(rest)) if (value !== undefined) said.set(name, String(value));
-  for (const [path, value] of changes) said.append("set", `${path}=${value}`);
-  if (view) said.set("view", view.map((each) => Number(each.toPrecision(5))).join());
-  return said.toString();
+  if (run !== undefined) params.set("world", String(run));
+  for (const [name, value] of Object.entries(rest)) if (value !== undefined) params.set(name, String(value));
+  for (const [path, value] of changes) params.append("set", `${path}=${value}`);
+  if (view) params.set("view", view.map((each) => Number(each.toPrecision(5))).join());
+  return params.toString();
 }

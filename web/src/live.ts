@@ -131,11 +131,11 @@ export class Live implements Source {
    * Runs the world for some steps, but at most for this time. Returns false, and does nothing, while the previous order is running.
    * `trace` records the path of the chosen agent; `actions` are what that agent does if its policy is `external`.
    */
-  advance(steps: number, milliseconds: number, told: { trace?: boolean; actions?: Actions } = {}): boolean {
+  advance(steps: number, milliseconds: number, options: { trace?: boolean; actions?: Actions } = {}): boolean {
     if (!this.ready || this.busy || this.error || (this.over && steps > 0)) return false;
     this.busy = true;
     // The digest reads the whole state, so it is requested only when the world is paused.
-    this.send({ type: "advance", steps, milliseconds, chosen: this.chosen, digest: steps === 0, ...told });
+    this.send({ type: "advance", steps, milliseconds, chosen: this.chosen, digest: steps === 0, ...options });
     return true;
   }
 
@@ -248,10 +248,10 @@ export class Live implements Source {
     row.deaths = counts.deaths! - this.sampled.deaths;
     row.generation_max = lives.reduce((most, life) => Math.max(most, life.generation), 0);
     this.layout.species.forEach((species, s) => {
-      const own = lives.filter((life) => life.species === s);
-      const mean = (of: (life: Life) => number) => own.reduce((sum, life) => sum + of(life), 0) / own.length;
+      const members = lives.filter((life) => life.species === s);
+      const mean = (of: (life: Life) => number) => members.reduce((sum, life) => sum + of(life), 0) / members.length;
       const put = (name: string, value: number) => (row[columnOf(this.layout, species, name)] = value);
-      put("alive", own.length);
+      put("alive", members.length);
       put("energy_mean", mean((life) => life.energy));
       for (const g of species.genes) put(`${this.layout.genes[g]!.name}_mean`, mean((life) => life.genome[g]!));
     });

@@ -268,14 +268,14 @@ function act(world: Engine, edit: Edit): string {
   }
 }
 
-interface Told {
+interface Outcome {
   done: number;
   trace: Float32Array;
   edit?: Edit["type"];
   refused: string;
 }
 
-function moment(world: Engine, { done, trace, refused, edit }: Told, { chosen, digest }: { chosen: number; digest: boolean }): Moment {
+function moment(world: Engine, { done, trace, refused, edit }: Outcome, { chosen, digest }: { chosen: number; digest: boolean }): Moment {
   const living = (world.view("living") as Int32Array).slice(0, world.number("head.living_count"));
   const waiting = world.number("head.death_log_count");
   const dead = lives(world, "death_log", Array.from({ length: waiting }, (_, i) => i));
@@ -310,10 +310,10 @@ self.onmessage = async ({ data }: MessageEvent<Order>) => {
   try {
     if (data.type === "make") self.postMessage(await make(data));
     else if (engine) {
-      const told: Told = { done: 0, trace: new Float32Array(), refused: "" };
-      if (data.type === "advance") Object.assign(told, advance(engine, data));
-      else [told.edit, told.refused] = [data.edit.type, act(engine, data.edit)];
-      self.postMessage({ type: "moment", moment: moment(engine, told, data) } satisfies Report);
+      const outcome: Outcome = { done: 0, trace: new Float32Array(), refused: "" };
+      if (data.type === "advance") Object.assign(outcome, advance(engine, data));
+      else [outcome.edit, outcome.refused] = [data.edit.type, act(engine, data.edit)];
+      self.postMessage({ type: "moment", moment: moment(engine, outcome, data) } satisfies Report);
     }
   } catch (error) {
     engine?.close();

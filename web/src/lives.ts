@@ -67,12 +67,12 @@ export class Lives {
   }
 
   private ancestors(id: number, generations: number): Set<number> {
-    const found = new Set([id]);
+    const ids = new Set([id]);
     let at = this.known.get(id);
     for (let i = 0; i < generations && at && at.parent >= 0; i++) {
-      found.add(at.parent);
+      ids.add(at.parent);
       at = this.known.get(at.parent);
     }
-    return found;
+    return ids;
   }
 }

@@ -211,10 +211,10 @@ export class Plot {
   }
 
   private button(text: string, act: () => void): HTMLButtonElement {
-    const made = element("button", { text, class: "file" });
-    made.setAttribute("aria-label", `${text} of ${this.content.title}`);
-    made.onclick = act;
-    return made;
+    const button = element("button", { text, class: "file" });
+    button.setAttribute("aria-label", `${text} of ${this.content.title}`);
+    button.onclick = act;
+    return button;
   }
 }
 

@@ -133,15 +133,15 @@ export class Plots implements View {
       if (gene.role === "neutral") return;
       const column = `${gene.name}_mean`;
       const name = columnOf(layout, species, column);
-      const said = element("span", { class: "verdict" });
+      const verdict = element("span", { class: "verdict" });
       const unit = gene.unit ? `${gene.unit}, mean of the living` : "mean of the living";
       const line: Line = { name, column, species: species.name, label: gene.title, color: gene.color };
-      const plot = this.addCurves(`${owner}${gene.title}`, unit, [line], () => drift(this.source, species, i), said);
+      const plot = this.addCurves(`${owner}${gene.title}`, unit, [line], () => drift(this.source, species, i), verdict);
       plot.judge = (at) => {
         const band = drift(this.source, species, i);
         const value = series.get(name)[at];
-        said.textContent = typeof band === "string" ? band : judged(value, band, at);
-        said.dataset.outside = String(typeof band !== "string" && outside(value, band, at));
+        verdict.textContent = typeof band === "string" ? band : judged(value, band, at);
+        verdict.dataset.outside = String(typeof band !== "string" && outside(value, band, at));
       };
       if (gene.role === "reward") this.add(new Density(this.source, species, gene, distributions));
     });

@@ -8,8 +8,8 @@ export function remember(name: string, value: string): void {
 }
 
 export function recall(name: string): string | undefined {
-  const found = document.cookie.split("; ").find((each) => each.startsWith(`hedon-${name}=`));
-  return found && decodeURIComponent(found.slice(found.indexOf("=") + 1));
+  const cookie = document.cookie.split("; ").find((each) => each.startsWith(`hedon-${name}=`));
+  return cookie && decodeURIComponent(cookie.slice(cookie.indexOf("=") + 1));
 }
 
 /** Restores the last theme: dark, light, or the system's. */

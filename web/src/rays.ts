@@ -36,9 +36,9 @@ function toWall(ox: number, oy: number, dx: number, dy: number, [ax, ay, bx, by]
 /** Casts the rays of agent `i` of a frame, from right to left. Heading 0 is up; positive is counterclockwise. */
 export function castRays(source: Source, frame: Frame, i: number): Ray[] {
   const { layout, obstacles } = source;
-  const own = bodyOf(source, frame, i);
-  const { count, spread_degrees: spread, length } = own.rays;
-  const body = own.radius;
+  const species = bodyOf(source, frame, i);
+  const { count, spread_degrees: spread, length } = species.rays;
+  const body = species.radius;
   const [x, y] = [frame.x[i]!, frame.y[i]!];
   const foodType = layout.species.length;
   const wall = foodType + layout.foods.length; // obstacles follow it
@@ -55,18 +55,18 @@ export function castRays(source: Source, frame: Frame, i: number): Ray[] {
     };
     for (let j = 0; j < frame.id.length; j++) {
       const other = frame.species[j]!;
-      if (j === i || !own.sees.includes(other)) continue;
+      if (j === i || !species.sees.includes(other)) continue;
       const { radius } = bodyOf(source, frame, j);
       if (Math.abs(frame.x[j]! - x) > reach + radius || Math.abs(frame.y[j]! - y) > reach + radius) continue;
       consider(toDisc(x, y, dx, dy, frame.x[j]!, frame.y[j]!, radius), other);
     }
     for (let f = 0; f < frame.foodX.length; f++) {
       const kind = frame.foodKind[f]!;
-      if (!own.sees.includes(foodType + kind)) continue;
+      if (!species.sees.includes(foodType + kind)) continue;
       consider(toDisc(x, y, dx, dy, frame.foodX[f]!, frame.foodY[f]!, layout.foods[kind]!.radius), foodType + kind);
     }
     for (const segment of layout.arena.walls) consider(toWall(x, y, dx, dy, segment), wall);
-    for (const side of own.sees.includes(wall + 1) ? sides : []) consider(toWall(x, y, dx, dy, side), wall + 1);
+    for (const side of species.sees.includes(wall + 1) ? sides : []) consider(toWall(x, y, dx, dy, side), wall + 1);
     rays.push({ x0: x + body * dx, y0: y + body * dy, x1: x + best * dx, y1: y + best * dy, type, share: (best - body) / length });
   }
   return rays;

@@ -11,7 +11,7 @@ export function recordedSettings({ base, changed, all }: RunIndex["settings"]): 
   search.setAttribute("aria-label", "find a setting");
   const rows = all.map(([path, value, meaning]) => element("div", {}, element("dt", { text: `${path} = ${value}` }), element("dd", { text: meaning })));
   search.oninput = () => rows.forEach((row, i) => (row.hidden = !all[i]!.some((text) => text.includes(search.value.trim().toLowerCase()))));
-  const every = element("details", {}, element("summary", { text: `All ${all.length} settings` }), search, element("dl", {}, ...rows));
+  const allSettings = element("details", {}, element("summary", { text: `All ${all.length} settings` }), search, element("dl", {}, ...rows));
   const hint = element("p", { text: "The settings of a recorded run can only be read. To change some, choose a live world above." });
-  return [heading, element("p", { text: about }), differences, every, hint];
+  return [heading, element("p", { text: about }), differences, allSettings, hint];
 }

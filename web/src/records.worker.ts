@@ -39,9 +39,9 @@ async function read(url: string, columns: string[] | undefined): Promise<Record<
     columns,
     compressors,
     onChunk: ({ columnName, columnData, rowStart }) => {
-      const found = chunks.get(columnName) ?? [];
-      found.push({ at: rowStart, data: columnData as ArrayLike<unknown> });
-      chunks.set(columnName, found);
+      const pieces = chunks.get(columnName) ?? [];
+      pieces.push({ at: rowStart, data: columnData as ArrayLike<unknown> });
+      chunks.set(columnName, pieces);
     },
   });
   for (const [name, parts] of chunks) {

@@ -23,9 +23,9 @@ export function quantile(values: number[], share: number): number {
 }
 
 function ofLives(source: Source, measure: (life: Life) => number): number {
-  const [every, values] = [Math.ceil(source.lives.size / SAMPLE), [] as number[]];
+  const [stride, values] = [Math.ceil(source.lives.size / SAMPLE), [] as number[]];
   let i = 0;
-  for (const life of source.lives.all()) if (i++ % every === 0) values.push(Math.abs(measure(life)));
+  for (const life of source.lives.all()) if (i++ % stride === 0) values.push(Math.abs(measure(life)));
   return quantile(values, SHARE);
 }
 

@@ -100,17 +100,17 @@ export class Settings {
   }
 
   private row(setting: Setting, changed: string | undefined): HTMLElement {
-    const own = String(setting.value);
+    const initial = String(setting.value);
     const input = setting.choices.length > 0 ? element("select") : Object.assign(element("input"), { inputMode: "decimal" as const });
     for (const choice of setting.choices) input.append(option(choice, choice));
-    input.value = changed ?? own;
+    input.value = changed ?? initial;
     input.dataset.path = setting.path;
     const name = setting.path.slice(setting.path.indexOf(".") + 1);
     const row = element("label", { class: "setting" }, element("span", { text: name }), input);
     const slider = range(setting);
     const take = (text: string) => {
       input.value = text;
-      this.take(setting, text, own, row);
+      this.take(setting, text, initial, row);
       this.act(setting, text, row);
     };
     input.addEventListener("input", () => {
@@ -124,17 +124,17 @@ export class Settings {
       row.append(slider);
     }
     row.append(element("small", { text: `${setting.meaning}; ${setting.allowed}` }), element("small", { class: "when" }));
-    if (changed !== undefined) this.take(setting, changed, own, row);
+    if (changed !== undefined) this.take(setting, changed, initial, row);
     return row;
   }
 
-  private take(setting: Setting, text: string, own: string, row: HTMLElement): void {
+  private take(setting: Setting, text: string, initial: string, row: HTMLElement): void {
     const wrong = refusal(setting, text);
     if (wrong) this.wrong.set(setting.path, wrong);
     else this.wrong.delete(setting.path);
-    if (text === own) this.changes.delete(setting.path);
+    if (text === initial) this.changes.delete(setting.path);
     else this.changes.set(setting.path, text);
-    row.classList.toggle("changed", text !== own);
+    row.classList.toggle("changed", text !== initial);
     row.classList.toggle("wrong", wrong !== "");
     this.problem.textContent = [...this.wrong.values()].join("\n");
     this.restart.disabled = this.wrong.size > 0;

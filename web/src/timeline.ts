@@ -11,29 +11,29 @@ const PAD = 6;
 export function events(source: Source): Event[] {
   const { step } = source.series;
   const [alive, generation] = [source.series.get("alive"), source.series.get("generation_max")];
-  const found: Event[] = [];
+  const marks: Event[] = [];
   let next = 10;
   let most = 0;
   for (let i = 0; i < step.length; i++) {
-    if (alive[i] === 0 && (i === 0 || alive[i - 1]! > 0)) found.push({ step: step[i]!, text: "died out" });
+    if (alive[i] === 0 && (i === 0 || alive[i - 1]! > 0)) marks.push({ step: step[i]!, text: "died out" });
     if (generation[i]! >= next) {
-      found.push({ step: step[i]!, text: `first agent of generation ${next}` });
+      marks.push({ step: step[i]!, text: `first agent of generation ${next}` });
       while (next <= generation[i]!) next = next < 100 ? next + 10 : next + 100;
     }
     most = Math.max(most, alive[i]!);
   }
   const peak = alive.indexOf(most);
-  if (peak > 0) found.push({ step: step[peak]!, text: `most agents alive: ${most}` });
+  if (peak > 0) marks.push({ step: step[peak]!, text: `most agents alive: ${most}` });
   const least = alive.reduce((a, b) => Math.min(a, b), Infinity);
   const trough = alive.indexOf(least);
-  if (least > 0 && trough > 0 && trough < step.length - 1) found.push({ step: step[trough]!, text: `fewest agents alive: ${least}` });
-  return [...found, ...departures(source)];
+  if (least > 0 && trough > 0 && trough < step.length - 1) marks.push({ step: step[trough]!, text: `fewest agents alive: ${least}` });
+  return [...marks, ...departures(source)];
 }
 
 /** The step from which each reward weight is outside its drift band, if it still is at the end. */
 function departures(source: Source): Event[] {
   const { layout, series } = source;
-  const found: Event[] = [];
+  const marks: Event[] = [];
   for (const species of layout.species) {
     const owner = layout.species.length > 1 ? `${species.name}: ` : "";
     species.genes.forEach((g, i) => {
@@ -43,10 +43,10 @@ function departures(source: Source): Event[] {
       const means = series.get(columnOf(layout, species, `${gene.name}_mean`));
       const inside = series.step.findLastIndex((_, at) => band.low[at] == null || !(means[at]! < band.low[at]! || means[at]! > band.high[at]!));
       const step = series.step[inside + 1];
-      if (step !== undefined) found.push({ step, text: `${owner}${gene.title}: outside drift from here on` });
+      if (step !== undefined) marks.push({ step, text: `${owner}${gene.title}: outside drift from here on` });
     });
   }
-  return found;
+  return marks;
 }
 
 export class Timeline {

@@ -68,8 +68,8 @@ export class Tools {
   update(now: number): void {
     const digest = this.source.digest();
     const known = digest !== "" && (!this.source.live || now >= this.source.last);
-    const said = `digest ${digest}${this.live?.edited ? ", changed by hand" : ""}`;
-    this.digest.textContent = known ? said : "Pause at the newest step to see the digest of the state.";
+    const digestText = `digest ${digest}${this.live?.edited ? ", changed by hand" : ""}`;
+    this.digest.textContent = known ? digestText : "Pause at the newest step to see the digest of the state.";
     if (!this.live) return;
     this.refused.textContent = this.live.refused;
     this.back.disabled = this.live.kept < 0;
@@ -95,8 +95,8 @@ export class Tools {
       if (!wrong.textContent) beside(chosen(), value.value);
     });
     const end = this.button("twin-end", "One world again", alone);
-    const said = "The world begins again, next to a copy of it with the same seed and this setting changed.";
-    return [element("p", { text: said, class: "quiet" }), choice, element("div", { class: "row" }, value, begin, end), wrong];
+    const explanation = "The world begins again, next to a copy of it with the same seed and this setting changed.";
+    return [element("p", { text: explanation, class: "quiet" }), choice, element("div", { class: "row" }, value, begin, end), wrong];
   }
 
   private files(live: Live): HTMLElement[] {

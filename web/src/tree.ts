@@ -32,7 +32,7 @@ export class Tree {
   private readonly host = by<HTMLDivElement>("tree");
   private readonly canvas = element("canvas", { class: "tree" });
   private readonly gene = element("select");
-  private readonly said = element("p", { class: "said" });
+  private readonly caption = element("p", { class: "said" });
   private readonly ends: HTMLElement = element("p", { class: "hint" });
 
   constructor(
@@ -53,7 +53,7 @@ export class Tree {
       element("div", { class: "row" }, this.gene),
       this.ends,
       this.canvas,
-      this.said,
+      this.caption,
       element("div", { class: "row" }, button("Branch of the agent", () => this.choose(agent())), button("One parent up", () => this.up()), button("No branch", () => this.choose(-1))),
     );
     this.gather();
@@ -97,10 +97,10 @@ export class Tree {
           if (below) roots.push(below);
           break;
         }
-        const there = this.known.get(life.id);
-        const branch = there ?? { life, row: 0, end: living.has(life.id) ? frame.step : 0, children: [] };
+        const existing = this.known.get(life.id);
+        const branch = existing ?? { life, row: 0, end: living.has(life.id) ? frame.step : 0, children: [] };
         if (below) branch.children.push(below);
-        if (there) break;
+        if (existing) break;
         this.known.set(life.id, branch);
         below = branch;
       }
@@ -142,7 +142,7 @@ export class Tree {
 
   private tell(): void {
     const life = this.known.get(this.chosen)?.life;
-    this.said.textContent = life
+    this.caption.textContent = life
       ? `${counted(this.bearers.size, "agent")} of ${show(this.frame!.id.length)} that live: agent ${life.id}, born at step ${show(life.birth)} in generation ${life.generation}, and its descendants. They are ringed in the arena.`
       : "Click a line to ring its agent and all its living descendants.";
   }
@@ -189,12 +189,12 @@ export class Tree {
 
   /** The life whose line is nearest to a place of the canvas, or -1. */
   private at(x: number, y: number): number {
-    let [found, best] = [-1, NEAR];
+    let [nearest, best] = [-1, NEAR];
     for (const { life, row, end } of this.branches) {
       if (x < this.toX(life.birth) - 2 || x > this.toX(end) + 2) continue;
       const away = Math.abs(this.toY(row) - y);
-      if (away < best) [found, best] = [life.id, away];
+      if (away < best) [nearest, best] = [life.id, away];
     }
-    return found;
+    return nearest;
   }
 }

@@ -33,20 +33,20 @@ export class Twin {
   draw(first: Arena, now: number, coloring: Coloring, legend: Painted["legend"] | undefined): void {
     const { live, arena } = this;
     if (!live || !arena) return;
-    const own = this.colors.find((each) => each.name === coloring.name) ?? coloring;
-    arena.draw(live, live.around(now).before, { ...own, low: legend?.low, high: legend?.high }, -1);
+    const matching = this.colors.find((each) => each.name === coloring.name) ?? coloring;
+    arena.draw(live, live.around(now).before, { ...matching, low: legend?.low, high: legend?.high }, -1);
     [arena.scene.centerX, arena.scene.centerY, arena.scene.zoom] = [first.scene.centerX, first.scene.centerY, first.scene.zoom];
   }
 
   caption(first: Live, now: number): void {
     if (!this.live || !this.setting) return;
     const { path, value } = this.setting;
-    by("caption").textContent = told(first, path, first.changes.get(path) ?? String(value), now);
-    by("caption-twin").textContent = told(this.live, path, this.value, now);
+    by("caption").textContent = summary(first, path, first.changes.get(path) ?? String(value), now);
+    by("caption-twin").textContent = summary(this.live, path, this.value, now);
   }
 }
 
-function told(live: Live, path: string, value: string, now: number): string {
+function summary(live: Live, path: string, value: string, now: number): string {
   const frame = live.around(now).before;
   if (!frame) return live.status();
   const energy = frame.energy.reduce((sum, each) => sum + each, 0) / frame.id.length;

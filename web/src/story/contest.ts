@@ -91,13 +91,13 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     map.named("you", ...you, styleColor("--you"), left ? "left" : "right");
   };
   const some = async (count: number) => {
-    const own = ++turn;
+    const thisTurn = ++turn;
     busy = true;
     able();
     for (let i = 0; i < count; i++) {
       if (stage.live.last > 0) stage.begin(stage.seed + 1);
       await stage.runTo(STEPS);
-      if (own !== turn) return;
+      if (thisTurn !== turn) return;
       note();
     }
     busy = false;
@@ -145,9 +145,9 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     stage,
     open: async (place) => {
       clear();
-      const own = turn;
+      const thisTurn = turn;
       await openStage(stage, place, read);
-      if (own === turn) note();
+      if (thisTurn === turn) note();
     },
   };
 }

@@ -30,7 +30,7 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   const guess = bindGuess(section);
   const hint = section.querySelector<HTMLElement>(".hint")!;
   const second = section.querySelector<HTMLElement>("#creature-moving")!; // the second slider
-  const told = (name: string) => section.querySelector<HTMLElement>(`#creature-${name}`)!;
+  const meter = (name: string) => section.querySelector<HTMLElement>(`#creature-${name}`)!;
 
   const takeOver = () => {
     if (strolling) stage.begin();
@@ -95,15 +95,15 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   stage.onWords = () => {
     const meals = stage.life()?.eaten[0] ?? 0;
     const done = meals >= ENOUGH && !guess.value() && stage.changes.size === 0;
-    const said = strolling ? "strolls" : stage.aim > stage.live.last ? "replays" : !steered ? "waits" : done ? "done" : "";
-    hint.hidden = said === "";
-    for (const each of hint.querySelectorAll<HTMLElement>("[data-when]")) each.hidden = each.dataset.when !== said;
+    const state = strolling ? "strolls" : stage.aim > stage.live.last ? "replays" : !steered ? "waits" : done ? "done" : "";
+    hint.hidden = state === "";
+    for (const each of hint.querySelectorAll<HTMLElement>("[data-when]")) each.hidden = each.dataset.when !== state;
     const life = stage.life();
     if (!life) return;
-    told("energy").textContent = show(life.energy, 1);
-    told("meals").textContent = show(meals);
-    told("reward").textContent = show(life.reward, 2);
-    told("meals").classList.toggle("reached", meals >= ENOUGH && !strolling);
+    meter("energy").textContent = show(life.energy, 1);
+    meter("meals").textContent = show(meals);
+    meter("reward").textContent = show(life.reward, 2);
+    meter("meals").classList.toggle("reached", meals >= ENOUGH && !strolling);
     if (stage.changes.size > 0 || guess.value() || (meals >= ENOUGH && !strolling)) second.hidden = false;
     if (guess.value()) guess.answer("Yes. Let moving feel like 5 and drive in circles: reward grows without a meal, while energy falls.");
   };

@@ -88,9 +88,9 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     if (busy && stage.running) return `World of seed ${stage.seed}: step ${show(stage.live.last)} of ${show(STEPS)}, ${living.length} alive.`;
     const last = done[done.length - 1];
     if (!last) return pad.whole ? "Now watch." : pad.guess.length > 0 ? "Go on to the right end." : "Draw first.";
-    return `${told(last)} ${tally(done)}`.trim();
+    return `${report(last)} ${tally(done)}`.trim();
   };
-  const told = ({ feeling: course, neutral, learns: learned, step }: Course): string => {
+  const report = ({ feeling: course, neutral, learns: learned, step }: Course): string => {
     const [begin, end] = [course[0]!, course[course.length - 1]!];
     const guessed = pad.whole && learned ? `You drew ${signed(pad.guess[POINTS - 1]!)}. ` : "";
     const died = step[step.length - 1]! < STEPS - APART ? ` All had died by step ${show(step[step.length - 1])}.` : "";
@@ -103,12 +103,12 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     busy = true;
     stage.set([RATE], rate);
     stage.begin(seed);
-    const own = now;
+    const course = now;
     draw();
     await stage.runTo(STEPS);
-    if (own !== now) return; // another world has begun in the meantime
+    if (course !== now) return; // another world has begun in the meantime
     busy = false;
-    if (own && own.step.length > 1 && !stage.live.error) done.push(own);
+    if (course && course.step.length > 1 && !stage.live.error) done.push(course);
     draw();
   };
   const usual = String(stage.value(RATE));

@@ -73,18 +73,18 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     const born = all.filter(({ parent }) => parent >= 0).length;
     count.textContent = `${show(all.length - died)} alive; so far ${born} were born and ${died} died.`;
     drawChances(stage);
-    const own = stage.life();
-    card.replaceChildren(...(own ? about(own) : [element("p", { text: "Click or tap a creature, or take the next child." })]));
+    const life = stage.life();
+    card.replaceChildren(...(life ? about(life) : [element("p", { text: "Click or tap a creature, or take the next child." })]));
     next.disabled = children().length === 0;
     if (guess.value() && known.length > 0) guess.answer(verdict(known));
   };
-  const about = (own: Life): HTMLElement[] => {
-    const parent = stage.life(own.parent);
+  const about = (life: Life): HTMLElement[] => {
+    const parent = stage.life(life.parent);
     const feels = (life: Life) => `a meal feels like ${show(life.genome[meal])}, moving like ${show(life.genome[moving])}`;
     const ate = (life: Life) => `${counted(life.eaten[0]!, "meal")} in ${counted((life.death >= 0 ? life.death : stage.live.last) - life.birth, "step")} of life`;
     const dead = (life: Life) => (life.death >= 0 ? " (dead)" : "");
     const kin = stage.frame ? [...stage.frame.id].filter((id) => stage.live.lives.founder(id) === root).length : 0;
-    const lines = [`Creature ${own.id}${dead(own)}: ${feels(own)}; ${ate(own)}, ${own.children} ${own.children === 1 ? "child" : "children"}.`];
+    const lines = [`Creature ${life.id}${dead(life)}: ${feels(life)}; ${ate(life)}, ${life.children} ${life.children === 1 ? "child" : "children"}.`];
     lines.push(parent ? `Its parent, ${parent.id}${dead(parent)}: ${feels(parent)}; ${ate(parent)}.` : "It is a founder.");
     if (parent) lines.push("Its network began at random, with nothing that the parent had learned.");
     lines.push(kin === 1 ? "Nobody else of its family lives." : `${kin} of its family live.`);

@@ -4,14 +4,14 @@ import type { Stage } from "./stage";
 
 /**
  * Binds every `input[data-path]` of a scene to its world, and every `[data-of]` in its text to a setting. The numbers follow a
- * moving slider; once it rests, the world begins again. `said` formats the values of some paths next to their sliders.
+ * moving slider; once it rests, the world begins again. `formats` gives the text for some paths next to their sliders.
  */
-export function bindKnobs(section: HTMLElement, stage: Stage, begin: () => void, said: Record<string, (value: number) => string> = {}): () => void {
+export function bindKnobs(section: HTMLElement, stage: Stage, begin: () => void, formats: Record<string, (value: number) => string> = {}): () => void {
   const knobs = [...section.querySelectorAll<HTMLInputElement>("input[data-path]")];
   const paths = (knob: HTMLInputElement) => knob.dataset.path!.split(" ");
   const tell = (knob: HTMLInputElement, value: number) => {
     const text = show(value, 5);
-    knob.parentElement!.querySelector("output")!.textContent = said[paths(knob)[0]!]?.(value) ?? text;
+    knob.parentElement!.querySelector("output")!.textContent = formats[paths(knob)[0]!]?.(value) ?? text;
     for (const path of paths(knob)) {
       for (const each of section.querySelectorAll(`[data-of="${CSS.escape(path)}"]`)) each.textContent = text;
     }

@@ -86,9 +86,9 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
   const learn = async () => {
     if (stage.running) return;
     if (stage.live.last >= steps) stage.begin(stage.seed + 1);
-    const own = turn;
+    const thisTurn = turn;
     await stage.runTo(steps);
-    if (own === turn && stage.live.last >= steps) stage.setPlaying(true);
+    if (thisTurn === turn && stage.live.last >= steps) stage.setPlaying(true);
   };
   run.addEventListener("click", () => void learn());
   const read = bindKnobs(section, stage, () => stage.begin());

@@ -32,7 +32,7 @@ async function begin(): Promise<void> {
       const scene = (scenes[name] = make(by(name), worlds));
       seen.observe(scene.stage?.host.querySelector(".view") ?? scene.section);
     } catch (error) { // for example without WebGL: a picture takes its place, and the other scenes still work
-      by(name).append(element("p", { class: "fault", text: `This scene cannot be shown: ${told(error)}.` }));
+      by(name).append(element("p", { class: "fault", text: `This scene cannot be shown: ${messageOf(error)}.` }));
       showStill(by(name).querySelector(".view")!, name);
     }
   }
@@ -62,7 +62,7 @@ async function openAddress(): Promise<void> {
     if (place.damage) throw new Error(place.damage);
     await scene.open?.(place);
   } catch (error) {
-    throw new Error(`The link is damaged: ${told(error)}.`);
+    throw new Error(`The link is damaged: ${messageOf(error)}.`);
   }
   if (location.hash !== hash) return; // another link has been opened in the meantime
   story.opened = hash;
@@ -73,12 +73,12 @@ async function openAddress(): Promise<void> {
 /** A message if the world differs from its link, or "". */
 function otherWorld({ live, chosen }: Stage, place: Place): string {
   const digest = live.digest();
-  const there = digest !== "" && (live.last === place.step || live.over); // false if the reader has begun another world in the meantime
-  if (there && place.digest && !digest.startsWith(place.digest)) {
+  const arrived = digest !== "" && (live.last === place.step || live.over); // false if the reader has begun another world in the meantime
+  if (arrived && place.digest && !digest.startsWith(place.digest)) {
     return `This is not the world of the link, whose letters are ${place.digest}: it is damaged, or made by another version, or by a browser that rounds otherwise.`;
   }
   const lost = place.notes.has("agent") && !live.lives.get(chosen);
-  return there && lost ? `The link is damaged: this world has no creature ${place.notes.get("agent")}.` : "";
+  return arrived && lost ? `The link is damaged: this world has no creature ${place.notes.get("agent")}.` : "";
 }
 
 function picture(): void {
@@ -87,11 +87,11 @@ function picture(): void {
   requestAnimationFrame(picture);
 }
 
-const told = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 function complain(error: unknown): void {
   by("notice").hidden = false;
-  by("notice").querySelector("span")!.textContent = told(error);
+  by("notice").querySelector("span")!.textContent = messageOf(error);
 }
 
 by("notice").querySelector("button")!.addEventListener("click", () => (by("notice").hidden = true));
@@ -125,7 +125,7 @@ function open(): void {
   hero().then(
     (playing) => Object.assign(story, { hero: playing }),
     (error) => {
-      fault.querySelector("span")!.textContent = `The recording cannot be played: ${told(error)}.`;
+      fault.querySelector("span")!.textContent = `The recording cannot be played: ${messageOf(error)}.`;
       fault.hidden = false;
     },
   );

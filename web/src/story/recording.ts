@@ -55,9 +55,9 @@ export function decode(bytes: Uint8Array): Recording {
   let from = 0;
   const actors = Array.from(first!, (born, i): Actor => {
     const to = from + count![i]!;
-    const own = { x: summed(x!.subarray(from, to)), y: summed(y!.subarray(from, to)) };
+    const path = { x: summed(x!.subarray(from, to)), y: summed(y!.subarray(from, to)) };
     from = to;
-    return { first: born, feeling: (feeling![i]! * head.limit) / GENE, neutral: (neutral![i]! * head.limit) / GENE, ...own };
+    return { first: born, feeling: (feeling![i]! * head.limit) / GENE, neutral: (neutral![i]! * head.limit) / GENE, ...path };
   });
   const grown = summed(foodFirst!);
   const foods = Array.from(grown, (born, i): Morsel => ({ first: born, count: foodCount![i]!, x: foodX![i]!, y: foodY![i]! }));

@@ -301,8 +301,8 @@ export class Stage {
     const config = button("Save the config", "link");
     config.addEventListener("click", () => save(`${this.world.name}.toml`, this.world.toml));
     const same = element("code", { text: command(this.world, this.changes, this.seed, this.live.last) });
-    const said = this.edited ? "You steered, so only the link reproduces this world. It began as " : "The same world on a command line: ";
-    this.how.replaceChildren(said, same, " ", config);
+    const intro = this.edited ? "You steered, so only the link reproduces this world. It began as " : "The same world on a command line: ";
+    this.how.replaceChildren(intro, same, " ", config);
     this.how.hidden = false;
   }
 }
