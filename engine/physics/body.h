@@ -27,20 +27,20 @@ HEDON_FN BodyShape make_disc(float radius, float density) {
 inline constexpr int MAX_BODY_CLASSES = 4;
 inline constexpr int MAX_CIRCLE_CLASSES = 8;
 
-/// How a contact rubs and bounces.
+/// Friction and restitution of a contact.
 struct Material {
   float friction;     ///< coefficient
   float restitution;  ///< coefficient
 };
 
-/// The classes of bodies and of static circles. Each class owns a range of slots. Walls from `first_obstacle` on have a
-/// material of their own.
+/// The classes of bodies and of static circles. Each class owns a range of slots. Walls from `first_obstacle` on have
+/// their own material.
 struct BodyTable {
   int32_t classes;
   int32_t first_slot[MAX_BODY_CLASSES + 1];  ///< class c owns slots [first_slot[c], first_slot[c + 1])
   BodyShape shape[MAX_BODY_CLASSES];
-  int32_t own;  ///< 1 where bodies have shapes of their own, `PhysicsState::shape`, between those of their class:
-  BodyShape smallest[MAX_BODY_CLASSES], largest[MAX_BODY_CLASSES];  ///< `shape` itself where they have none
+  int32_t own;  ///< 1 if bodies have individual shapes, `PhysicsState::shape`, between these limits of their class:
+  BodyShape smallest[MAX_BODY_CLASSES], largest[MAX_BODY_CLASSES];  ///< both equal to `shape` if they do not
   uint32_t meets_bodies[MAX_BODY_CLASSES];   ///< bit c: it collides with bodies of class c; symmetric
   uint32_t meets_circles[MAX_BODY_CLASSES];  ///< bit c: it collides with circles of class c
   int32_t circle_classes;
@@ -84,7 +84,7 @@ struct BodyTable {
   }
 };
 
-/// One class of bodies and one of circles, all of which collide.
+/// One class of bodies and one class of circles, all of which collide.
 HEDON_FN BodyTable uniform_bodies(const BodyShape& shape, float circle_radius, int64_t slots, int64_t circles) {
   BodyTable table{};
   table.classes = table.circle_classes = 1;

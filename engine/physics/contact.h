@@ -9,10 +9,10 @@
 
 namespace hedon {
 
-/// The kinds of the two things in a pair.
+/// What a body is paired with.
 enum class PairKind : int32_t { body, circle, wall };
 
-/// Velocities of one body, next to one another in memory, because contacts read and write them together.
+/// Velocities of one body, adjacent in memory because contacts read and write them together.
 struct alignas(16) Motion {
   float x, y;     ///< velocity [u/s]
   float angular;  ///< angular velocity [rad/s]

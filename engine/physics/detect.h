@@ -34,7 +34,7 @@ HEDON_FN BatchRange batch_range(const NeighborList& list, int32_t batch) {
           list.walls.start[last]};
 }
 
-/// All bodies are of one class: their mass cancels from every contact.
+/// All bodies are of one class, so their mass cancels in every contact.
 struct AlikeBodies {
   using Contact = BodyContact;
   float size, inverse_of_mass, inverse_of_inertia, gyration;
@@ -63,7 +63,7 @@ struct MixedBodies {
   HEDON_FN MixedBodies(const BodyTable& classes, const PhysicsState&, const PhysicsScratch& scratch)
       : table(classes), body_class(scratch.body_class.data) {}
 
-  /// Keeps the class of a body; call it first in each step.
+  /// Stores the class of a body; call it first in each step.
   HEDON_FN void note(int32_t index, int32_t slot) const {
     body_class[index] = static_cast<uint8_t>(table.body_class(slot));
   }
@@ -72,17 +72,17 @@ struct MixedBodies {
   HEDON_FN float inverse_mass(int32_t index) const { return 1.0f / shape(index).mass; }
   HEDON_FN float inverse_inertia(int32_t index) const { return 1.0f / shape(index).inertia; }
   HEDON_FN float inverse_gyration(int32_t index) const { return shape(index).mass / shape(index).inertia; }
-  /// Change of velocity per impulse: the mass of the first class over that of the body.
+  /// Change of velocity per impulse: the mass of the first class divided by the body's mass.
   HEDON_FN float weight(int32_t index) const { return table.shape[0].mass / shape(index).mass; }
   HEDON_FN static float for_lightest(int32_t, float squared_force) { return squared_force; }
   HEDON_FN static MixedContact* contacts(const PhysicsScratch& scratch) { return scratch.mixed_contacts.data; }
 };
 
-/// Bodies with shapes of their own, by their index in the list.
+/// Bodies with individual shapes, by their index in the list.
 struct OwnBodies {
   using Contact = MixedContact;
-  float unit;      ///< mass that impulses are in units of
-  float lightest;  ///< least mass that a body can have
+  float unit;      ///< unit of mass for impulses
+  float lightest;  ///< smallest possible mass of a body
   const BodyShape* by_slot;
   BodyShape* by_index;
 
@@ -106,7 +106,7 @@ struct OwnBodies {
   HEDON_FN static MixedContact* contacts(const PhysicsScratch& scratch) { return scratch.mixed_contacts.data; }
 };
 
-/// The input of a solver: one batch in one step, and who works on it.
+/// The input of a solver: one batch in one step, and the workers on it.
 template <class Bodies, class Workers>
 struct Batch {
   using Crew = Workers;
@@ -140,8 +140,8 @@ struct Batch {
   }
 };
 
-/// Puts a body whose center went through an outer wall back onto it: a small body, in one substep, or one that others
-/// pushed. A wall does not push a center that lies behind it, so the body would leave the arena for good.
+/// Moves a body whose center has passed through an outer wall back onto it. A small body can do so in one substep, and
+/// others can be pushed through. A wall does not push a center that is behind it, so the body would never return.
 template <class Bodies, class Crew>
 HEDON_FN void keep_inside(const Batch<Bodies, Crew>& batch, int32_t index) {
   constexpr float MARGIN = 1.0e-3f;  ///< from the wall [u]
@@ -176,8 +176,8 @@ HEDON_FN Direction direction_of(Vec2 between) {
   return {between.x * inverse, between.y * inverse, distance};
 }
 
-/// The contacts of a batch with circles, and then those with walls. Within each part, those of one body follow one
-/// another, and act in this order.
+/// The contacts of a batch: first with circles, then with walls. Within each part, the contacts of one body are
+/// consecutive, and act in this order.
 struct StaticContacts {
   StaticContact* contact;
   int32_t circles;  ///< how many are with circles

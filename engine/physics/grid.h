@@ -86,8 +86,8 @@ HEDON_FN void for_each_in(const Grid& grid, float low_x, float low_y, float high
   }
 }
 
-/// Calls f(item) for a superset of the items that were inserted within `reach` [u] of a point. Their order is that of
-/// the linked lists; results must not depend on it.
+/// Calls f(item) for a superset of the items that were inserted within `reach` [u] of a point. They come in the order
+/// of the linked lists, on which results must not depend.
 template <class F>
 HEDON_FN void for_each_near(const Grid& grid, float x, float y, float reach, F&& f) {
   for_each_in(grid, x - reach, y - reach, x + reach, y + reach, f);

@@ -1,7 +1,7 @@
 /// The contact solver of the paper's released code: biased impulses in Jacobi passes, including its faults.
 ///
-/// In a pass, every contact reads the velocities from the beginning of the pass. Then each body gets the sum of the
-/// changes by its contacts, in the order of contacts, so that the sum depends only on the bodies of the island. Crowds
+/// In a pass, every contact reads the velocities at the start of the pass. Then the changes from a body's contacts are
+/// added to it in the order of contacts, so that the sum depends only on the bodies of the island. Crowds
 /// separate more slowly than with sequential impulses and bodies overlap by several units, which decides which agent
 /// eats. Impulses between bodies are equal and opposite, so pairs of bodies keep their total momentum, up to float
 /// rounding.
@@ -105,7 +105,7 @@ struct JacobiContacts {
   StaticContacts statics;
 };
 
-/// Adds to each body what the contacts of a pass have changed, and forgets it.
+/// Adds the changes from the contacts of a pass to each body, and clears them.
 template <class Bodies, class Crew, class Add>
 HEDON_FN void add_changes(const Batch<Bodies, Crew>& batch, Add&& add) {
   batch.each_body([&](int32_t index) {
@@ -138,7 +138,7 @@ HEDON_FN void jacobi_pass(const Batch<Bodies, Crew>& batch, const JacobiContacts
   });
 }
 
-/// How far two things overlap [u].
+/// The depth of an overlap [u].
 template <class Bodies, class Crew>
 HEDON_FN float overlap(const Batch<Bodies, Crew>& batch, const BodyContact& contact) {
   return 2.0f * (batch.bodies.radius(contact.first) - contact.arm);
@@ -154,8 +154,8 @@ HEDON_FN float overlap(const Batch<Bodies, Crew>& batch, const StaticContact& co
 
 /// Solves one contact separately and returns the change of its impulses. Overlap gives a velocity (a bias) at which
 /// the two are to separate; the normal impulse of the pass before limits friction.
-/// kept   share of its impulse that a contact starts from: 1, but 0 in the first pass. There it uses velocities as if
-///        its stored impulse were applied to the bodies. It never is, so this cancels it.
+/// kept   share of the stored impulse that a contact starts from: 1, but 0 in the first pass. The first pass uses
+///        velocities as if the stored impulse had been applied to the bodies. It never is, so this cancels it.
 template <class Bodies, class Crew, class Contact>
 HEDON_FN ContactVelocity solve_biased(Contact& contact, const Batch<Bodies, Crew>& batch, ContactVelocity velocity,
                                       float kept) {

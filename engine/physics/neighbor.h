@@ -16,14 +16,14 @@ namespace hedon {
 /// Share of the skin that a body may move before the list is built again: half, minus a margin for rounding.
 inline constexpr float SKIN_SHARE = 0.49f;
 
-/// Calls f(slot) for a superset of the bodies whose centers lie within `reach` [u] of a point, including bodies that
+/// Calls f(slot) for a superset of the bodies whose centers are within `reach` [u] of a point, including bodies that
 /// moved since the last build. A body that has left the order since then is included too, unless it was removed.
 template <class F>
 HEDON_FN void for_each_body_near(const PhysicsState& state, float x, float y, float reach, F&& f) {
   for_each_near(state.body_grid, x, y, reach + 0.5f * state.neighbors.head[0].skin, f);
 }
 
-/// Calls f(slot) for a superset of the circles whose centers lie within `reach` [u] of a point.
+/// Calls f(slot) for a superset of the circles whose centers are within `reach` [u] of a point.
 template <class F>
 HEDON_FN void for_each_circle_near(const PhysicsState& state, float x, float y, float reach, F&& f) {
   for_each_near(state.circle_grid, x, y, reach, f);
@@ -48,7 +48,7 @@ HEDON_FN int32_t find_pair(const PairList& list, int32_t first, int32_t second) 
 /// Candidates of one kind, by rising first rank (walls: by rising wall).
 struct PairBuilder {
   const PairScratch& found;
-  int32_t count = 0;  ///< also of those for which there is no room
+  int32_t count = 0;  ///< including candidates for which there is no room
 
   HEDON_FN int32_t room() const { return static_cast<int32_t>(found.first.count); }
 

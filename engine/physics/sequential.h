@@ -133,7 +133,7 @@ HEDON_FN void solve_velocity(const Crew& crew, const StaticContacts& found, cons
   });
 }
 
-/// Applies the impulses of the substep before.
+/// Applies the impulses of the previous substep.
 template <class Crew, class Contact>
 HEDON_FN void warm_start(const Crew& crew, const ColoredContacts<Contact>& found, Motion* motion) {
   found.each(crew, [&](const Contact& contact) {

@@ -113,7 +113,7 @@ HEDON_FN constexpr float normal_mass(const BodyContact&) { return 0.5f; }
 HEDON_FN float normal_mass(const MixedContact& contact) { return contact.normal_mass; }
 HEDON_FN constexpr float normal_mass(const StaticContact&) { return 1.0f; }
 
-/// How a contact rubs and bounces: only static objects differ.
+/// Friction and restitution of a contact, in which only static objects differ.
 template <class Contact>
 HEDON_FN Material material(const Contact&, const SolverConstants& c) {
   return {c.friction, c.restitution};
@@ -122,7 +122,7 @@ HEDON_FN Material material(const StaticContact& contact, const SolverConstants&)
   return {contact.friction, contact.restitution};
 }
 
-/// Share of a correction of positions that moves each body.
+/// Share of a position correction that each body moves.
 struct Shares {
   float first, second;
 };
@@ -136,7 +136,7 @@ HEDON_FN float correction(const SolverConstants& c, float separation) {
   return clamp(c.correction_rate * (separation + c.slop), -c.max_correction, 0.0f);
 }
 
-/// Keeps the accumulated impulses of a contact for the next substep.
+/// Stores the accumulated impulses of a contact for the next substep.
 template <class Contact>
 HEDON_FN void keep_impulse(const Contact& contact, const PairScratch& work) {
   work.normal[contact.pair] = contact.normal_impulse;

@@ -64,7 +64,7 @@ struct NeighborList {
 
 struct PhysicsState {
   BodyState bodies;
-  Array<BodyShape> shape;  ///< by slot, where bodies have shapes of their own
+  Array<BodyShape> shape;  ///< by slot, if bodies have individual shapes
   StaticCircles circles;
   Array<Segment> walls;
   int32_t outer_walls;  ///< number of outer walls, which come first: a closed polygon, clockwise, around the bodies
@@ -95,8 +95,7 @@ struct BatchReport {
   float squared_moved;  ///< largest squared distance of a body from its position at the last build; infinite if not
                         ///< finite
   float squared_speed;  ///< largest squared speed at the end
-  float squared_force;  ///< largest squared force; where bodies have shapes of their own, what does as much to the
-                        ///< lightest
+  float squared_force;  ///< largest squared force; if bodies have individual shapes, the equivalent for the lightest
   float unused;
 
   HEDON_FIELDS(BatchReport, squared_moved, squared_speed, squared_force, unused)
@@ -114,7 +113,7 @@ struct PhysicsScratch {
   Array<float> angle;          ///< by index, not wrapped within a step [rad]
   Array<uint32_t> colors;      ///< by index: colors of the contacts of the body
   Array<int32_t> active;       ///< pairs of bodies that touch in this substep
-  Array<int32_t> color;        ///< of each of them, and its number among those of its color
+  Array<int32_t> color;        ///< of each active pair, and its number within the color
   Array<int32_t> color_start;  ///< first contact of each color of each batch; (MAX_BATCHES · 33)
   PairScratch bodies;
   PairScratch circles;
@@ -144,21 +143,20 @@ struct PhysicsCapacity {
   float cell;     ///< side of a grid cell [u]
   float skin;     ///< skin that the capacities are for [u]
   int32_t mixed;  ///< 1 if bodies differ
-  int32_t own;    ///< 1 if they have shapes of their own
+  int32_t own;    ///< 1 if they have individual shapes
 
   HEDON_FIELDS(PhysicsCapacity, bodies, circles, walls, body_pairs, circle_pairs, wall_pairs, columns, rows, cell, skin,
                mixed, own)
 };
 
-/// Capacities for an arena. Discs that do not overlap limit the number of pairs: within a skin of 20 u (twice the
+/// Capacities for an arena. Discs that do not overlap can form only so many pairs: within a skin of 20 u (twice the
 /// radius) of a body with radius 10 u there are at most 22 others, and half of them count here; 16 leaves room for
 /// overlap. Around a circle there are fewer than 24 bodies. In a convex corner, a body is near its chords and two
 /// walls. With the solver jacobi, a crowd can burst: for one substep a body moves at up to 250 u/s, which needs a skin
 /// of 50 u and more. There is room for all pairs of up to 200 bodies, and for the same number of neighbors of each body
-/// in a larger world. Among obstacles there are more sides near a body than the two of a corner, and a body that genes
-/// made large is near more of the chords of a round corner. A light body that a heavy one hits can need a wider skin
-/// than these numbers are for, and in a small world that takes in almost everything: each list has room for `few`
-/// pairs.
+/// in a larger world. Among obstacles, more sides can be near a body than the two of a corner, and a body that genes
+/// have made large is near more chords of a round corner. A light body hit by a heavy one can need a wider skin than
+/// these numbers allow for, which in a small world covers almost everything: each list has room for `few` pairs.
 HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64_t walls, float width, float height,
                                           const BodyTable& table, const PhysicsConfig& config) {
   const bool bursts = config.solver == PhysicsSolver::jacobi;
@@ -167,7 +165,7 @@ HEDON_FN PhysicsCapacity physics_capacity(int64_t bodies, int64_t circles, int64
   capacity.bodies = bodies;
   capacity.circles = circles;
   capacity.walls = walls;
-  // A large disc has more small neighbors.
+  // A large disc can have more small neighbors.
   const float ratio = table.max_radius() / table.min_radius();
   const int64_t wide = static_cast<int64_t>(ceilf(ratio * ratio));
   const auto room = [](int64_t usual, int64_t all) {

@@ -1,16 +1,16 @@
 /// One step of the physics: forces, damping, contacts, and the resulting motion.
 ///
 /// Every contact in every substep is reported to the caller's visitor:
-///   visitor.on_start(slot)   before a body's first substep of each try of a step: delete all notes about the body
+///   visitor.on_start(slot)   before a body's first substep of each try of a step: discard all data about the body
 ///   visitor.on_contact(crew, kind, body, other, direction, angle, bit, mark)
-///     crew       who works on the body's island; its threads may report contacts of one body at the same time
+///     crew       the threads that work on the body's island; they may report contacts of one body at the same time
 ///     body       slot of the body; a pair of bodies is reported for each of them
 ///     other      slot of the other body or circle, or index of the wall
 ///     direction  from the body's center to the contact, unit vector in the world's frame
 ///     angle      of the body in this substep [rad]: its angle before the step plus its rotation since then
 ///     mark       a byte of the pair, 0 when the step begins, free for the visitor's use
-///     bit        a bit for the mark that tells the two bodies of a pair apart: FIRST or SECOND
-/// So they may write data of the pair, and set bits of the body by `crew.set_bits`.
+///     bit        a bit for the mark that distinguishes the two bodies of a pair: FIRST or SECOND
+/// So a visitor may write data of the pair, and set bits of the body with `crew.set_bits`.
 #pragma once
 
 #include <cstdint>
@@ -143,14 +143,14 @@ HEDON_FN BatchReport largest_report(const PhysicsScratch& scratch, int32_t batch
   return all;
 }
 
-/// Most doublings of the skin within a step; after that, the step fails. A jam under the solver jacobi once threw a
-/// body 330 u far in a step, which 8 did not hold; 12 hold 4,000 u with the usual skin.
+/// Maximum number of doublings of the skin within a step; after that, the step fails. A jam under the solver jacobi
+/// once threw a body 330 u in a step, more than 8 doublings cover; 12 cover 4,000 u with the usual skin.
 inline constexpr int MAX_REPEATS = 12;
 
 /// One step of the physics. All members of the group call it with the same arguments.
 ///
-/// order    slots of the living bodies, `count` of them. Everything follows this order, so that results do not depend
-///          on which slots are used. After a change of the order, of circles, walls or positions, the caller sets
+/// order    slots of the `count` living bodies. Everything is done in this order, so that results do not depend on
+///          which slots are used. After a change of the order, of circles, walls or positions, the caller sets
 ///          `state.neighbors.head[0].stale` (`mark_stale`).
 /// force    acts in the first substep
 /// fault    neighbor_overflow; not_finite; contact_outside_skin if even a skin 2^12 times as wide is not enough.
@@ -159,7 +159,7 @@ inline constexpr int MAX_REPEATS = 12;
 /// A step is tried in scratch memory. If a body moves further than the neighbor list allows, the list is built with
 /// twice the skin and the step is tried again, so that no contact is ever missed.
 ///
-/// Returns whether there is no fault: after that, any member may set one, so none may look at it.
+/// Returns whether there was no fault. Use this result: afterwards any member may set a fault, so none may read it.
 template <class Group, class Visitor>
 HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const BodyTable& table, const PhysicsState& state,
                            const PhysicsScratch& scratch, const Array<int32_t>& order, int32_t count,
@@ -205,8 +205,8 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
       });
       return false;
     }
-    group.barrier();  // all members have read the reports, so a new list may come
-    // If the list was new, its skin was too small. If it was used before, the same skin may be enough in a new list.
+    group.barrier();  // all members have read the reports, so a new list may be built
+    // If the list was new, its skin was too small. If it was an older one, the same skin may be enough for a new list.
     skin = build ? 2.0f * skin : usual_skin;
     build = true;
   }
@@ -218,7 +218,7 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
   const float speed = sqrtf(squared_speed) + sqrtf(report.squared_force) * inverse_mass * constants.dt;
   const float free_path = speed * constants.glide;
   const int32_t stale = sqrtf(report.squared_moved) + free_path > SKIN_SHARE * skin;
-  // Bodies by slot, not by batch: otherwise two members would write to most cache lines in turn.
+  // Bodies by slot, not by batch; otherwise two members would alternately write to most cache lines.
   group.for_each(static_cast<int>(state.neighbors.index.count),
                  [&](int32_t slot) { commit_body(state, scratch, slot); });
   group.for_each_by_crew(head.batches, [&](const auto& crew, int32_t batch) {
