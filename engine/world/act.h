@@ -21,7 +21,7 @@ HEDON_FN NormalPair action_noise(const World& world, int32_t slot) {
   return to_normal(bits.word[0], bits.word[1]);
 }
 
-/// Samples an action for the agent in `slot` and keeps it with its log-probability and the state's value.
+/// Samples an action for the agent in `slot` and stores it with its log-probability and the state's value.
 /// output   of its network
 HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const float* output) {
   const WorldState& state = world.state;
@@ -39,7 +39,7 @@ HEDON_FN void sample_action(World& world, int32_t slot, int64_t t, const float* 
   state.value[row] = output[ACTIONS];
 }
 
-/// The action of the agent in `slot`, into row `t` of its rollout, if its species has no networks.
+/// Writes the action of the agent in `slot` to row `t` of its rollout, if its species has no networks.
 HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
   float* action = &world.state.action[(slot * int64_t{world.shape->rollout} + t) * ACTIONS];
   switch (world.species(slot).config.learning.policy) {
@@ -59,7 +59,7 @@ HEDON_FN void act_without_network(World& world, int32_t slot, int64_t t) {
   }
 }
 
-/// The action of the agent in `slot`, into row `t` of its rollout, by the policy of its species.
+/// Writes the action of the agent in `slot` to row `t` of its rollout, according to the policy of its species.
 HEDON_FN void choose_action(World& world, int32_t slot, int64_t t) {
   if (!world.species(slot).has_network) return act_without_network(world, slot, t);
   float output[16];
@@ -92,8 +92,8 @@ HEDON_FN void apply_motors(World& world, int32_t slot, int64_t t) {
   scratch.torque[slot] = species.motor_arm * (right - left);
 }
 
-/// All agents observe and act. A team goes through the agents in turn forward and backward: what it read last in one
-/// step, it reads first in the next, while it is still in the cache.
+/// All agents observe and act. A team processes the agents alternately forward and backward, so that the data read last
+/// in one step is read first in the next, while it is still in the cache.
 template <class Group>
 HEDON_FN void sense_and_act(Group& group, World& world, int64_t t) {
   const auto one = [&](int32_t i) {

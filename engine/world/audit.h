@@ -24,7 +24,7 @@ HEDON_FN bool all_finite(const float* values, int64_t count) {
   return wild == 0;
 }
 
-/// Every slot is either used by one of the living or free, and its flag says which.
+/// Every slot is either used by one living agent or free, as its flag indicates.
 HEDON_FN void audit_slots(const World& world) {
   const WorldHead& head = world.head();
   const WorldState& state = world.state;
@@ -53,7 +53,7 @@ HEDON_FN void audit_slots(const World& world) {
   }
 }
 
-/// Ids ascend in the order of the living and none is above the newest; counts of births, deaths and foods agree.
+/// Ids ascend in the living order and none exceeds the newest; counts of births, deaths and foods agree.
 HEDON_FN void audit_counts(const World& world) {
   const WorldHead& head = world.head();
   int32_t before = -1;
@@ -64,7 +64,7 @@ HEDON_FN void audit_counts(const World& world) {
     if (!good) return world.fail(Status::ids_inconsistent, life.agent_id, before, life.parent_id);
     before = life.agent_id;
   }
-  // Every id was given once, to a founder or to a child.
+  // Every id was assigned once, to a founder or to a child.
   int64_t births = 0, deaths = 0;
   for (int32_t s = 0; s < world.shape->species; ++s) {
     births += world.state.counters[s].births;
@@ -133,7 +133,7 @@ HEDON_FN int32_t agent_at(const World& world, int32_t index) {
   return -1;
 }
 
-/// Whether a circle of the scene is a food that was eaten in this step: it is seen, and nothing is there.
+/// Whether a circle of the scene is a food eaten in this step, which is still seen but no longer there.
 HEDON_FN bool was_eaten(const World& world, int32_t index) {
   const RayScene& scene = world.scene;
   for (int32_t e = 0; e < world.head().eaten_food_count; ++e) {
@@ -147,9 +147,10 @@ HEDON_FN bool was_eaten(const World& world, int32_t index) {
 
 /// How far two discs may overlap: the radius of a body. Overlaps after contacts are much smaller: motors close a gap by
 /// at most about 0.3 u per substep, and the corrections of the next substep remove a third of that. With more overlap a
-/// contact is ill-defined, since a body's center is inside the other object, and the two may pass through each other:
-/// a pair was missed. The solver jacobi leaves overlaps of 1 to 10 u in crowds, and its contacts are well-defined up to
-/// the center. With it, the distance of centers must be at least a quarter of the distance at which the two just touch.
+/// contact is ill-defined, since a body's center is inside the other object, and the two may pass through each other;
+/// it means that a pair was missed. The solver jacobi leaves overlaps of 1 to 10 u in crowds, and its contacts are
+/// well-defined up to the center. With it, the distance of centers must be at least a quarter of the distance at which
+/// the two just touch.
 HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
   const RayScene& scene = world.scene;
   const RayGrid& grid = world.shape->scene;
@@ -162,7 +163,7 @@ HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
   const int32_t first_column = cell_along(x - reach, grid.inverse_cell, grid.columns);
   const int32_t last_column = cell_along(x + reach, grid.inverse_cell, grid.columns);
   const int32_t last_row = cell_along(y + reach, grid.inverse_cell, grid.rows);
-  // Check everything near, not only listed pairs: the neighbor list itself may be wrong.
+  // Check everything nearby, not only listed pairs, since the neighbor list itself may be wrong.
   for (int32_t row = cell_along(y - reach, grid.inverse_cell, grid.rows); row <= last_row; ++row) {
     const int32_t* start = scene.start.data + int64_t{row} * grid.columns;
     for (int32_t at = start[first_column]; at < start[last_column + 1]; ++at) {
@@ -177,7 +178,7 @@ HEDON_FN Finding audit_overlap(const World& world, int32_t slot) {
   return {Status::ok, -1, 0.0};
 }
 
-/// The agent in `slot`: its numbers are finite, its center is inside the arena and inside no other object.
+/// Checks the agent in `slot`: its numbers are finite, and its center is inside the arena but in no other object.
 HEDON_FN Finding audit_agent(const World& world, int32_t slot) {
   const WorldState& state = world.state;
   const BodyState& body = state.physics.bodies;

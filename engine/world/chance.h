@@ -1,4 +1,4 @@
-/// Chances of dying and of having a child in a step, by the formulas of a config.
+/// Probabilities of dying and of having a child in a step, with the formulas of a config.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ HEDON_FN double hazard_by_age(const HazardConfig& config, double age) {
   return config.alpha_age * exp_double(config.beta_age * age);
 }
 
-/// Probability of having a child in a step at a weighted sum of the stores, by its form.
+/// Probability of having a child in a step, given a weighted sum of the stores, by the form of the birth rule.
 HEDON_FN double birth_rate(const BirthConfig& config, double held) {
   switch (config.form) {
     case BirthForm::logistic:
@@ -33,7 +33,7 @@ HEDON_FN double birth_rate(const BirthConfig& config, double held) {
   return 0.0;
 }
 
-/// The parts of the hazard by all stores of the agent in `slot`, and by its age [step].
+/// The parts of the hazard that depend on all stores of the agent in `slot`, and on its age [step].
 HEDON_FN double hazard_by_stores_and_age(const World& world, int32_t slot, double age) {
   const Species& species = world.species(slot);
   const HazardConfig& config = species.config.hazard;
@@ -46,7 +46,7 @@ HEDON_FN double hazard_by_stores_and_age(const World& world, int32_t slot, doubl
   return chance;
 }
 
-/// Probability of dying in a step at age `age` [step], by the form of the hazard.
+/// Probability of dying in a step at age `age` [step], given the form of the hazard.
 HEDON_FN double hazard(const World& world, int32_t slot, double age) {
   const HazardConfig& config = world.species(slot).config.hazard;
   switch (config.form) {

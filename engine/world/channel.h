@@ -1,4 +1,4 @@
-/// Reads channels: numbers that can be known of an agent in a step. `hedon.config.channel` says what each source is.
+/// Reads channels: quantities known about an agent in a step. `hedon.config.channel` documents each source.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ HEDON_FN float sight_of(const Species& species, const PackedObservation& seen, i
   return mean ? sum / static_cast<float>(rays) : largest;
 }
 
-/// Mean over the noses of what they smell of a channel of smell.
+/// Mean intensity over the noses in a channel of smell.
 HEDON_FN float smell_of(const World& world, int32_t slot, int32_t channel) {
   const int32_t noses = world.species(slot).config.sensor.noses;
   const float* smelled = &world.scratch.smelled[int64_t{slot} * world.shape->scents + channel * noses];
@@ -47,7 +47,7 @@ HEDON_FN float smell_of(const World& world, int32_t slot, int32_t channel) {
   return sum / static_cast<float>(noses);
 }
 
-/// How many touch sectors of the agent in `slot` felt something in its last step: of the channels of touch
+/// How many touch sectors of the agent in `slot` felt something in its last step, in the touch channels
 /// [first, last).
 HEDON_FN int32_t felt_sectors(const World& world, int32_t slot, int32_t first, int32_t last) {
   const int32_t sectors = world.species(slot).config.sensor.touch_sectors;
@@ -70,7 +70,7 @@ HEDON_FN float applied_force(const World& world, int32_t slot) {
   return sqrtf(left * left + right * right);
 }
 
-/// The drive of the agent in `slot` before this step's meals and costs less the drive after them.
+/// The drive reduction of the agent in `slot`: its drive before this step's meals and costs minus the drive after them.
 HEDON_FN double drive_reduction(const World& world, int32_t slot) {
   const Species& species = world.species(slot);
   const auto measure = [&](int32_t i) {
@@ -94,7 +94,7 @@ HEDON_FN double season(const World& world, int32_t slot, int32_t part) {
   return part == 0 ? sine : cosine;
 }
 
-/// The number that a channel has of the agent in `slot`, before it is scaled.
+/// The unscaled value of a channel for the agent in `slot`.
 /// seen   what it observes
 HEDON_FN double channel_value(const World& world, int32_t slot, const PackedObservation& seen, const Channel& channel) {
   const WorldState& state = world.state;
@@ -177,12 +177,12 @@ HEDON_FN double channel_value(const World& world, int32_t slot, const PackedObse
   return 0.0;
 }
 
-/// The scaled number, as agents observe it and are paid by it.
+/// The scaled value, as agents observe it and as rewards use it.
 HEDON_FN float read_channel(const World& world, int32_t slot, const PackedObservation& seen, const Channel& channel) {
   return static_cast<float>(channel_value(world, slot, seen, channel)) / channel.scale;
 }
 
-/// What the config itself pays the agent in `slot` for this step.
+/// The reward of the agent in `slot` for this step according to the config.
 HEDON_FN float own_reward(const World& world, int32_t slot) {
   const Species& species = world.species(slot);
   const RewardConfig& config = species.config.reward;
@@ -192,7 +192,7 @@ HEDON_FN float own_reward(const World& world, int32_t slot) {
                 [&](const Channel& channel) { return read_channel(world, slot, seen, channel); });
 }
 
-/// Keeps what of this step the agent in `slot` observes in the next one.
+/// Stores the values of this step that the agent in `slot` observes in the next one.
 HEDON_FN void keep_last(const World& world, int32_t slot) {
   const FixedList<Channel, MAX_CHANNELS>& last = world.species(slot).layout.last;
   for (int32_t i = 0; i < last.count; ++i) {

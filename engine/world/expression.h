@@ -1,4 +1,4 @@
-/// Genes that set numbers of a species, expressed once, at birth: a gene g multiplies the number by 10^g.
+/// Genes that set numbers of a species. They are expressed once, at birth: a gene g multiplies the number by 10^g.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hedon {
 
-/// Gives the agent in `slot` the numbers that its genes set, in worlds that have such genes. It has its genome.
+/// Gives the agent in `slot` the numbers that its genes set, in worlds with such genes. It must have its genome.
 HEDON_FN void express_settings(const World& world, int32_t slot) {
   if (!world.shape->own) return;
   const Species& common = world.shape->of[world.shape->species_of(slot)];
@@ -47,8 +47,8 @@ HEDON_FN LearningConfig own_learning(const World& world, int32_t slot) {
   return own;
 }
 
-/// Sets what genes set: numbers of the agent in `slot`, and parts of its new network if its species learns. It has its
-/// network and its genome.
+/// Applies the genes of the agent in `slot` to its numbers, and to parts of its new network if its species learns. It
+/// must have its network and its genome.
 HEDON_FN void express_genes(World& world, int32_t slot) {
   express_settings(world, slot);
   const Species& species = world.species(slot);

@@ -1,4 +1,4 @@
-/// How long the arrays of a world are, and how long their contents last. `HEDON_ARRAYS` names both for each array.
+/// The sizes of a world's arrays, and the lifetimes of their contents. `HEDON_ARRAYS` names both for each array.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ enum class Extent : uint8_t {
   resident_slots,  ///< slots, if only agents in slots that were taken when the window began have children
   network_slots,   ///< slots, if some species acts by networks; of other species they are not used
   learner_slots,   ///< slots, if some species learns; of other species they are not used
-  external_slots,  ///< slots, if some species is told what to do
+  external_slots,  ///< slots, if the caller controls some species
   ruled_slots,     ///< slots, if some species has a rule of the caller
   packed_slots,    ///< slots, if some act with weights in pairs
   species,
@@ -46,14 +46,14 @@ enum class Extent : uint8_t {
   instinct_slots,    ///< slots, if some species passes on the networks that it was born with
   mating_slots,      ///< slots, if some species has two parents
   mating_death_log,  ///< the same, if some species has two parents
-  store_slots,       ///< slots, if some species has a store beside energy
-  store_death_log,   ///< deaths that wait for the reader, if some species has a store beside energy
-  last_slots,        ///< slots, if some species observes what was of the step before
-  birth_slots,       ///< slots, if some species senses, or is paid for, the children that it had
-  last,              ///< most numbers of a step that are kept for the next observation
+  store_slots,       ///< slots, if some species has a store other than energy
+  store_death_log,   ///< deaths that wait for the reader, if some species has a store other than energy
+  last_slots,        ///< slots, if some species observes values of the previous step
+  birth_slots,       ///< slots, if some species senses, or is rewarded for, its children
+  last,              ///< most values of a step that are kept for the next observation
   stores,            ///< most stores of a species
   more_stores,       ///< the same without energy
-  scents,            ///< what an agent smells: channels times noses
+  scents,            ///< smells of an agent: channels times noses
   memory,            ///< numbers that a rule keeps for each agent
   record,            ///< numbers that a rule gets for one agent
   near,              ///< most queries of a species
@@ -62,8 +62,8 @@ enum class Extent : uint8_t {
   observations,      ///< cache lines of the observations of a rollout, and of the one after it
   wide_slots,        ///< slots, if some observations are wide
   hunted_slots,      ///< slots, if some species eats agents
-  claims,            ///< who would eat whom in a step: one claim for each agent, or several
-  deaths,            ///< species, if they die of more than age and energy
+  claims,            ///< claims of eaters on prey in a step: one for each agent, or several
+  deaths,            ///< species, if agents can die of causes other than age and energy
   meals,             ///< what an agent can eat: food kinds, and species if some species eats agents
 };
 
@@ -96,12 +96,12 @@ struct ArrayShape {
   Lifetime lifetime;
 };
 
-/// Whether an array is one of those that are large and needed only where agents learn: moments and observations.
+/// Whether an array is large and needed only for learning: moments and observations.
 constexpr HEDON_INLINE bool is_cold(ArrayShape size) {
   return size.width == Extent::observations || (size.rows == Extent::learner_slots && size.width == Extent::params);
 }
 
-/// How many agents ahead cold arrays are asked for.
+/// How many agents ahead cold arrays are prefetched.
 inline constexpr int32_t AHEAD = 8;
 
 /// members   of the team that steps the world

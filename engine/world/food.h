@@ -12,7 +12,7 @@
 
 namespace hedon {
 
-/// Where a center has drifted to by now.
+/// The current position of a drifting center.
 HEDON_FN Vec2 center_at(const World& world, const PlacementConfig& placement, int32_t center) {
   const auto moved = [&](float start, float drift, float side) {
     const double now = static_cast<double>(start) + static_cast<double>(drift) * static_cast<double>(world.head().step);
@@ -23,7 +23,7 @@ HEDON_FN Vec2 center_at(const World& world, const PlacementConfig& placement, in
   return {moved(start.x, placement.drift.x, arena.width), moved(start.y, placement.drift.y, arena.height)};
 }
 
-/// A candidate position for a food of kind `k`; it may lie outside the arena.
+/// A candidate position for a food of kind `k`; it may be outside the arena.
 HEDON_FN Vec2 draw_food_position(const World& world, int32_t k, const RandomStream& random, uint32_t index) {
   const PlacementConfig& placement = world.config->food[k].placement;
   const Random4 bits = random.draw(index);
@@ -68,7 +68,7 @@ HEDON_FN void place_food(World& world, int32_t k, Vec2 position) {
   mark_stale(state.physics);
 }
 
-/// Tries candidate number `i` as the place of a food of kind `k`; whether it is one now.
+/// Tries to place a food of kind `k` at candidate number `i`; returns whether it was placed.
 HEDON_FN bool try_food(World& world, int32_t k, const RandomStream& random, uint32_t i) {
   const Vec2 position = draw_food_position(world, k, random, i);
   if (!has_spacing(world, k, position) || !can_place(world, position, world.config->world.food_radius)) return false;
@@ -96,7 +96,7 @@ HEDON_FN void place_first_food(World& world, int32_t k, const RandomStream& rand
 
 HEDON_FN int32_t food_kind(const WorldShape& shape, int32_t food) { return shape.bodies.circle_class(food); }
 
-/// Feeds `slot` with a food of kind `k`; the place where food appears moves on after a number of meals.
+/// Feeds `slot` a food of kind `k`. With switching placement, the center changes after a number of meals.
 HEDON_FN void feed(World& world, int32_t slot, int32_t k) {
   FoodStock& stock = world.state.food_stock[k];
   const PlacementConfig& placement = world.config->food[k].placement;
@@ -107,8 +107,8 @@ HEDON_FN void feed(World& world, int32_t slot, int32_t k) {
   }
 }
 
-/// The nearest of the agents whose mouths touched a food in this step eats it, or all of them do; those that lack what
-/// it needs do not.
+/// Of the agents whose mouths touched a food in this step, the nearest eats it, or all of them do, except those that do
+/// not hold what it needs.
 HEDON_FN void share_food(World& world) {
   WorldState& state = world.state;
   StepScratch& scratch = world.scratch;
@@ -146,7 +146,7 @@ HEDON_FN void share_food(World& world) {
   }
 }
 
-/// All agents forget their meals, and eat.
+/// Clears all meals of the last step, and lets agents eat.
 template <class Crew>
 HEDON_FN void eat(const Crew& crew, World& world) {
   crew.each(0, world.head().living_count, [&](int32_t i) {

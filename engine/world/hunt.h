@@ -1,4 +1,4 @@
-/// Agents that eat agents: who would eat whom, and who does.
+/// Agents that eat agents: which claims they have, and which of these are met.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,7 @@
 
 namespace hedon {
 
-/// The eaters of a step and their prey: of each eater one claim, on the nearest agent at its mouth, or on every such
-/// agent.
+/// The claims of a step: each eater has one, on the nearest agent at its mouth, or one on every such agent.
 struct Claims {
   const StepScratch& scratch;
   bool every;
@@ -34,7 +33,7 @@ struct Claims {
     scratch.claim_prey[at] = scratch.claim_prey[count];
   }
 
-  /// Whether somebody has a claim on this agent.
+  /// Whether some eater has a claim on this agent.
   HEDON_FN bool is_claimed(int32_t slot) const {
     for (int32_t i = 0; i < count; ++i) {
       if (scratch.claim_prey[i] == slot) return true;
@@ -43,14 +42,14 @@ struct Claims {
   }
 };
 
-/// The number by which agents are drawn when the order matters; equal for all agents of a step only by chance.
+/// The random number that orders agents when the order matters. Ties within a step are possible only by chance.
 HEDON_FN uint32_t hunt_draw(const World& world, int32_t slot) {
   const RandomStream random{world.seed, Purpose::hunt, static_cast<uint32_t>(world.state.life[slot].agent_id),
                             static_cast<uint32_t>(world.head().step)};
   return random.draw(0).word[0];
 }
 
-/// From the contacts of the step: each mouth that touches prey has a claim, unless its owner still digests.
+/// Collects claims from the contacts of the step: each mouth that touches prey has one, unless its owner is digesting.
 HEDON_FN Claims find_claims(const World& world) {
   const WorldState& state = world.state;
   const BodyState& body = state.physics.bodies;
@@ -68,7 +67,7 @@ HEDON_FN Claims find_claims(const World& world) {
   return claims;
 }
 
-/// Whether claim `a` comes before claim `b` in the order of the ids of eaters, then of prey.
+/// Whether claim `a` precedes claim `b` in the order of the ids of eaters, then of prey.
 HEDON_FN bool comes_before(const World& world, int32_t a, int32_t b) {
   const StepScratch& scratch = world.scratch;
   const auto id = [&](int32_t slot) { return world.state.life[slot].agent_id; };
@@ -76,8 +75,8 @@ HEDON_FN bool comes_before(const World& world, int32_t a, int32_t b) {
   return first < second || (first == second && id(scratch.claim_prey[a]) < id(scratch.claim_prey[b]));
 }
 
-/// The claim that is settled next: of the eaters that nobody claims, or of all if each is claimed by another, the one
-/// with the least draw.
+/// The claim that is settled next: the one with the smallest draw among the eaters that no other claims, or among all
+/// if every eater is claimed.
 HEDON_FN int32_t next_claim(const World& world, const Claims& claims) {
   const StepScratch& scratch = world.scratch;
   for (const bool only_free : {true, false}) {
@@ -96,14 +95,14 @@ HEDON_FN int32_t next_claim(const World& world, const Claims& claims) {
   return -1;
 }
 
-/// What an eater gains by its prey: its share of what that has left, or had before the step.
+/// An eater's gain from its prey: its share of the energy that the prey has left, or had before the step.
 HEDON_FN double gain_by(const World& world, int32_t eater, int32_t prey) {
   const float share = world.species(eater).layout.eats_species[world.shape->species_of(prey)];
   const bool before = world.config->world.prey_energy == WorldPreyEnergy::before_step;
   return static_cast<double>(share) * (before ? world.held_before(prey)[ENERGY] : world.state.life[prey].energy);
 }
 
-/// Gives an eater what it gains by its prey.
+/// Gives an eater its gain from its prey.
 HEDON_FN void feed_with(World& world, int32_t eater, int32_t prey, double gained) {
   const SpeciesConfig& config = world.species(eater).config;
   const int32_t s = world.shape->species_of(prey);
@@ -119,8 +118,8 @@ HEDON_FN void feed_with(World& world, int32_t eater, int32_t prey, double gained
   world.state.digestion[eater] = config.diet.digestion_steps;
 }
 
-/// Settles claims where one eater gets each prey: an agent that is eaten eats nothing, so its own prey stays
-/// alive; and one that eats is not eaten, also where others of a cycle claim it.
+/// Settles claims if only one eater gets each prey. An agent that is eaten eats nothing, so its own prey stays alive;
+/// an agent that eats is not eaten, even if another agent of a cycle claims it.
 HEDON_FN void settle_one_by_one(World& world, Claims& claims) {
   const StepScratch& scratch = world.scratch;
   while (claims.count > 0) {
@@ -135,8 +134,7 @@ HEDON_FN void settle_one_by_one(World& world, Claims& claims) {
   }
 }
 
-/// Puts claims into the order of `comes_before`, in which sums of what an eater gains are the same for all orders of
-/// contacts.
+/// Sorts claims by `comes_before`, so that the sum of an eater's gains does not depend on the order of contacts.
 HEDON_FN void sort_claims(const World& world, const Claims& claims) {
   const StepScratch& scratch = world.scratch;
   const auto swap = [](int32_t& a, int32_t& b) {
@@ -152,8 +150,8 @@ HEDON_FN void sort_claims(const World& world, const Claims& claims) {
   }
 }
 
-/// Settles claims where each holds: all are judged by what agents have before anyone eats, so no order matters. An
-/// agent that is eaten eats too, and dies with what it gained.
+/// Settles claims if all of them are met. All are based on what agents have before any of them eats, so the order does
+/// not matter. An agent that is eaten eats too, and dies with what it has gained.
 HEDON_FN void settle_all_at_once(World& world, const Claims& claims) {
   const StepScratch& scratch = world.scratch;
   sort_claims(world, claims);
@@ -165,8 +163,8 @@ HEDON_FN void settle_all_at_once(World& world, const Claims& claims) {
     feed_with(world, scratch.claim_eater[i], scratch.claim_prey[i], scratch.claim_gain[i]);
 }
 
-/// Settles who eats whom in this step. An agent that starves in it neither eats nor is eaten. If several eat one agent,
-/// one gets it, by a draw, or each in full.
+/// Settles all claims of this step. An agent that starves in this step neither eats nor is eaten. If several agents
+/// claim the same prey, either one of them gets it, by a draw, or each gets it in full.
 HEDON_FN void hunt(World& world) {
   const StepScratch& scratch = world.scratch;
   const WorldState& state = world.state;

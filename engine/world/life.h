@@ -29,7 +29,7 @@ HEDON_FN void decide_birth(const World& world, int32_t slot, double draw, double
   world.scratch.breeds[slot] = world.scratch.starved[slot] == 0 && !is_eaten(world, slot) && draw < chance;
 }
 
-/// Pays one agent its meals and charges it for living and for its motors.
+/// Credits one agent with its meals, and charges it for living and for its motors.
 HEDON_FN void spend_energy(World& world, int32_t slot) {
   const WorldState& state = world.state;
   const StepScratch& scratch = world.scratch;
@@ -54,7 +54,7 @@ HEDON_FN void spend_energy(World& world, int32_t slot) {
   life.force_right += scratch.force_right[slot];
 }
 
-/// One agent's reward for this step, into its rollout, unless a rule pays its species.
+/// Writes one agent's reward for this step to its rollout, unless a rule computes it.
 HEDON_FN void compute_reward(World& world, int32_t slot, int64_t t) {
   if (world.ruled(slot, RuleUse::reward)) return;
   const float r = own_reward(world, slot);
@@ -69,7 +69,7 @@ HEDON_FN Random4 fate_bits(const World& world, int32_t slot) {
   return random.draw(0);
 }
 
-/// Draws whether an agent has a child and whether it dies; where a rule computes its chances, it decides later.
+/// Draws whether an agent has a child and whether it dies. If a rule computes its chances, this is decided later.
 HEDON_FN void draw_births_and_deaths(World& world, int32_t slot) {
   const Random4 bits = fate_bits(world, slot);
   world.scratch.death_draw[slot] = to_fine_uniform(bits.word[2], bits.word[3]);
@@ -78,7 +78,7 @@ HEDON_FN void draw_births_and_deaths(World& world, int32_t slot) {
   if (!world.ruled(slot, RuleUse::hazard)) decide_death(world, slot, death_chance(world, slot));
 }
 
-/// Decides by the rule of a species which of its agents die, or have a child.
+/// Decides which agents of a species die, or have a child, with the chances from its rule.
 HEDON_FN void decide_by_rule(World& world, int32_t s, RuleUse use) {
   const int32_t count = ask_all(world, s, use);
   for (int32_t i = 0; i < count; ++i) {
@@ -93,7 +93,7 @@ HEDON_FN void decide_by_rule(World& world, int32_t s, RuleUse use) {
   }
 }
 
-/// Asks all rules: first what agents are paid, then, with the memories that this leaves, their chances.
+/// Calls all rules: first for rewards, then for chances, which may depend on the memories that the former leave.
 HEDON_FN void apply_rules(World& world) {
   for (int32_t s = 0; s < world.shape->species && world.shape->ruled; ++s) {
     const SpeciesLayout& layout = world.shape->of[s].layout;
@@ -109,14 +109,14 @@ HEDON_FN void decide_death_again(World& world, int32_t slot) {
   decide_death(world, slot, ruled ? ask_chance(world, slot, RuleUse::hazard) : death_chance(world, slot));
 }
 
-/// Adds an agent's meals of this step to those of its species.
+/// Adds an agent's meals of this step to the counts of its species.
 HEDON_FN void count_meals(const World& world, int32_t slot) {
   const int32_t meals = world.shape->meals();
   int64_t* sum = &world.state.eaten_by[int64_t{world.shape->species_of(slot)} * meals];
   for (int32_t m = 0; m < meals; ++m) sum[m] += world.meal(slot)[m];
 }
 
-/// Adds the energy that the living gained and spent in this step to the ledger, in their order.
+/// Adds the energy that living agents gained and spent in this step to the ledger, in the living order.
 HEDON_FN void keep_ledger(World& world) {
   const StepScratch& scratch = world.scratch;
   for (int32_t i = 0; i < world.head().living_count; ++i) {
@@ -153,7 +153,7 @@ HEDON_FN bool find_child_position(const World& world, int32_t parent, float radi
   return false;
 }
 
-/// A child of `parent`, and of `mate` unless that is -1, if there is a free slot and a free place.
+/// Makes a child of `parent`, and of `mate` unless that is -1, if there are a free slot and a free place.
 HEDON_FN void try_birth(World& world, int32_t parent, int32_t mate) {
   Counters& counters = world.counters(parent);
   Vec2 position;
@@ -163,7 +163,7 @@ HEDON_FN void try_birth(World& world, int32_t parent, int32_t mate) {
     counters.births_failed_space += 1;
   } else {
     spawn_child(world, parent, mate, position);
-    // Again, since the parents gave energy to the child.
+    // Decide again, since the parents gave energy to the child.
     decide_death_again(world, parent);
     if (mate < 0) return;
     decide_death_again(world, mate);
@@ -171,8 +171,8 @@ HEDON_FN void try_birth(World& world, int32_t parent, int32_t mate) {
   }
 }
 
-/// Each agent whose draw made it a parent has a child, in random order; in species with two parents, together with
-/// one that waits near it, or else it waits itself.
+/// Each agent that drew a birth has a child, in random order. In species with two parents, it has one together with a
+/// waiting agent near it, or else starts to wait.
 HEDON_FN void breed(World& world) {
   StepScratch& scratch = world.scratch;
   const WorldState& state = world.state;
@@ -203,7 +203,7 @@ HEDON_FN void breed(World& world) {
   }
 }
 
-/// Removes the agents for whom `dies` is 1 from the living. Newborns cannot die in the step of their birth.
+/// Removes the agents with `dies` = 1. Newborns cannot die in the step of their birth.
 HEDON_FN void apply_deaths(World& world, const Array<uint8_t>& dies) {
   const WorldState& state = world.state;
   WorldHead& head = world.head();

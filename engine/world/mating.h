@@ -1,4 +1,4 @@
-/// Two parents: agents whose draw made them parents wait for a while for another one that is near.
+/// Two parents: an agent that drew a birth waits some time for a second such agent nearby.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ HEDON_FN bool needs_mate(const World& world, int32_t slot) {
   return world.species(slot).config.birth.mating == BirthMating::pairs;
 }
 
-/// From this step on the agent in `slot` waits for a second parent.
+/// Makes the agent in `slot` wait for a second parent from this step on.
 HEDON_FN void await_mate(const World& world, int32_t slot) {
   world.state.ready_until[slot] = world.head().step + world.species(slot).config.birth.mating_window;
 }
 
-/// The nearest agent of the same species that waits and is within range; of equally near ones the oldest; -1 for none.
+/// The nearest waiting agent of the same species within range; the oldest of equally near ones; -1 if there is none.
 HEDON_FN int32_t find_mate(const World& world, int32_t slot) {
   const WorldState& state = world.state;
   const BodyState& body = state.physics.bodies;
@@ -45,7 +45,7 @@ HEDON_FN int32_t find_mate(const World& world, int32_t slot) {
   return best;
 }
 
-/// Neither of two parents waits any longer.
+/// Ends the waiting of two parents.
 HEDON_FN void end_waiting(const World& world, int32_t slot, int32_t mate) {
   world.state.ready_until[slot] = world.state.ready_until[mate] = -1;
 }

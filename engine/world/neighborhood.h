@@ -1,4 +1,4 @@
-/// What is near an agent: queries. `hedon.config.schema.neighbor` says what each number is.
+/// Queries about what is near an agent. `hedon.config.schema.neighbor` documents each number.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ HEDON_FN bool are_kin(const World& world, int32_t slot, int32_t other) {
 /// Whether a query finds things of a type.
 HEDON_FN bool asks_for(const NeighborQuery& query, int32_t type) { return (query.types >> type & 1) != 0; }
 
-/// Answers one query about the agent in `slot` as a step begins, by the scene: foods just eaten count if they are seen.
-/// Of equally near agents the oldest is the nearest, then the first food.
+/// Answers one query about the agent in `slot` at the start of a step, from the scene: foods just eaten count if they
+/// are seen. Ties go to the oldest agent, then to the first food.
 HEDON_FN Answer ask_neighbors(const World& world, int32_t slot, const NeighborQuery& query, Vec2 forward) {
   const RayScene& scene = world.scene;
   const int32_t own = scene.own[slot];
@@ -58,12 +58,12 @@ HEDON_FN void look_around(const World& world, int32_t slot, Vec2 forward) {
     world.scratch.near[int64_t{slot} * world.shape->near + q] = ask_neighbors(world, slot, queries[q], forward);
 }
 
-/// What query `q` found about the agent in `slot`.
+/// The answer to query `q` about the agent in `slot`.
 HEDON_FN const Answer& answer(const World& world, int32_t slot, int32_t q) {
   return world.scratch.near[int64_t{slot} * world.shape->near + q];
 }
 
-/// What the living agents of a query that are near when a step is done ate in it, in meals.
+/// The number of meals eaten in a step by the living agents that match a query at its end.
 HEDON_FN int32_t count_meals_near(const World& world, int32_t slot, const NeighborQuery& query) {
   const BodyState& body = world.state.physics.bodies;
   int32_t count = 0;

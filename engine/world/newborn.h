@@ -1,5 +1,6 @@
-/// Newborns that inherit only when the window ends, as in the paper's released code: until then they act with the
-/// network and are paid by the genome that their slot had before. See "What `released` changes" in docs/model.md.
+/// Newborns that inherit only at the end of the window, as in the paper's released code. Until then they act with the
+/// network, and are rewarded by the genome, of the previous agent in their slot. See "What `released` changes" in
+/// docs/model.md.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@
 
 namespace hedon {
 
-/// Makes the optimizer of a slot that of an agent that has learned nothing. Where nobody has learned since the world
-/// was made, the moments are 0, and their memory is not touched.
+/// Resets the optimizer of a slot. If no agent has learned there since the world was made, the moments are 0 already,
+/// and their memory is not touched.
 HEDON_FN void forget_updates(World& world, int32_t slot) {
   const WorldState& state = world.state;
   if (!world.species(slot).learns || state.updates[slot] == 0) return;
@@ -33,21 +34,21 @@ HEDON_FN void give_network(World& world, int32_t slot, const RandomStream& rando
   forget_updates(world, slot);
 }
 
-/// Keeps the network of a newcomer, where it will be passed on.
+/// Stores the initial network of a new agent, if it will be passed on.
 HEDON_FN void keep_initial(const World& world, int32_t slot) {
   const Species& species = world.species(slot);
   if (!species.learns || species.config.birth.network != BirthNetwork::initial) return;
   for (int32_t p = 0; p < species.network.size(); ++p) world.initial_params(slot)[p] = world.params(slot)[p];
 }
 
-/// The network of an agent that has learned nothing.
+/// Makes the network of an agent that has learned nothing.
 HEDON_FN void give_own_network(World& world, int32_t slot) {
   const uint32_t id = static_cast<uint32_t>(world.state.life[slot].agent_id);
   give_network(world, slot, RandomStream{world.seed, Purpose::network, id, 0});
   keep_initial(world, slot);
 }
 
-/// The network of a child: a new one, or one of its parent's with noise.
+/// Makes the network of a child: a new one, or its parent's current or initial one with noise.
 HEDON_FN void give_child_network(World& world, int32_t parent, int32_t slot) {
   const Species& species = world.species(parent);
   const BirthConfig& birth = species.config.birth;
@@ -90,7 +91,7 @@ HEDON_FN float* newborn_genome(const World& world, int32_t index) {
   return &world.state.newborn_genome[int64_t{index} * world.shape->genes];
 }
 
-/// Notes who the parent of the newest agent is, until the window ends.
+/// Records the parent of the newest agent until the window ends.
 HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
   const WorldState& state = world.state;
   const int32_t at = world.head().births_in_window;
@@ -99,7 +100,7 @@ HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
   Newborn& newborn = state.newborn[at] = {child_id, -1};
   if (state.newborn_species.count > 0) state.newborn_species[at] = world.shape->species_of(parent);
   const bool young = life.birth_step > world.window_start();
-  // A young parent has its own genome only when the window ends. What lies past the end of a genome is 0 all the time.
+  // A young parent gets its own genome only when the window ends. Entries past the end of a genome are always 0.
   for (int32_t g = 0; g < world.shape->genes; ++g)
     newborn_genome(world, at)[g] = young ? 0.0f : world.genome(parent)[g];
   if (!young) return;
@@ -107,7 +108,7 @@ HEDON_FN void note_newborn(World& world, int32_t parent, int32_t child_id) {
 }
 
 /// Gives the newborns of a window, in the order of their births, their genomes, and those that still live their
-/// networks. A newborn that was itself a parent passes on the genome that it gets here.
+/// networks. A newborn that has become a parent passes on the genome that it gets here.
 HEDON_FN void apply_late_inheritance(World& world) {
   const WorldState& state = world.state;
   const WorldHead& head = world.head();
@@ -131,7 +132,7 @@ HEDON_FN void apply_late_inheritance(World& world) {
   }
 }
 
-/// Begins a window: notes which slots are taken, and counts births from 0.
+/// Begins a window: records which slots are taken, and sets the count of births to 0.
 HEDON_FN void open_window(World& world) {
   WorldHead& head = world.head();
   head.births_before = head.births_in_window;

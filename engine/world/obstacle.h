@@ -1,5 +1,4 @@
-/// Obstacles: regular polygons at places that depend only on the config and the seed of the world, and the harm they
-/// do.
+/// Obstacles: regular polygons, whose places depend only on the config and the seed of the world, and their harm.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +12,10 @@
 
 namespace hedon {
 
-/// Draws tried for the place of one obstacle.
+/// Maximum number of draws for the place of one obstacle.
 inline constexpr uint32_t OBSTACLE_TRIES = 20000;
 
-/// One polygon by the circle through its corners.
+/// One polygon, described by the circle through its corners.
 struct Polygon {
   Vec2 center;
   float radius, angle;
@@ -29,8 +28,8 @@ HEDON_FN Vec2 corner_of(const Polygon& polygon, int32_t corner, int32_t corners)
           polygon.center.y + polygon.radius * static_cast<float>(sine)};
 }
 
-/// Whether obstacle `i` may stand here: its circle is inside, and away from inner walls and the obstacles before it. On
-/// a grid, no other stands in its cell.
+/// Whether obstacle `i` may be here: its circle is inside the arena, and clear of inner walls and earlier obstacles. On
+/// a grid, its cell must be empty.
 HEDON_FN bool may_stand(const World& world, const Polygon& polygon, int32_t i, const Vec2* centers,
                         const float* radii) {
   const float cell = world.config->obstacle.cell;
@@ -71,7 +70,7 @@ HEDON_FN bool find_obstacle_place(const World& world, int32_t i, const Vec2* cen
   return false;
 }
 
-/// Puts the obstacles of a world behind its other walls. Their sides run clockwise, so their inside is to the right.
+/// Appends the obstacles of a world to its other walls. Their sides run clockwise, so their inside is to the right.
 HEDON_FN void place_obstacles(World& world) {
   const int32_t corners = world.config->obstacle.corners;
   Vec2 centers[MAX_OBSTACLES];
@@ -92,19 +91,19 @@ HEDON_FN void place_obstacles(World& world) {
   }
 }
 
-/// How many obstacles do harm now: the first ones.
+/// How many obstacles are harmful now: the first ones in the list.
 HEDON_FN int32_t harmful_obstacles(const World& world) {
   const ObstacleConfig& config = world.config->obstacle;
   return static_cast<int32_t>(factor_at(config.schedule.harmful, world.head().step) * config.count + 0.5);
 }
 
-/// Counts for each agent the harmful obstacles that it touched in this step, whichever of their sides.
+/// Counts the harmful obstacles that each agent touched in this step, each once for all of its sides.
 HEDON_FN void count_obstacle_contacts(World& world) {
   const PairList& pairs = world.state.physics.neighbors.walls;
   const NeighborList& list = world.state.physics.neighbors;
   for (int32_t i = 0; i < world.head().living_count; ++i) world.scratch.touched[world.state.living[i]] = 0;
   const int32_t harmful = harmful_obstacles(world);
-  // The walls of a body are listed in order, so the sides of an obstacle follow one another.
+  // The walls of a body are listed in order, so the sides of an obstacle are consecutive.
   int32_t body = -1, last = -1;
   for (int32_t pair = 0; pair < pairs.start[list.head[0].bodies]; ++pair) {
     if (pairs.mark[pair] == 0) continue;

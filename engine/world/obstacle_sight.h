@@ -1,6 +1,6 @@
-/// What rays read of obstacles under `obstacle.sight = "released"`: a fault of the sequel's released code, which moves
-/// rays into the frame of a polygon by the forward instead of the inverse transform, and takes the first of the entries
-/// instead of the last. See "Obstacles" in docs/model.md.
+/// How rays see obstacles under `obstacle.sight = "released"`. This reproduces a fault of the sequel's released code,
+/// which moves rays into the frame of a polygon with the forward instead of the inverse transform, and takes the first
+/// entry instead of the last. See "Obstacles" in docs/model.md.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace hedon {
 
-/// Most corners of an obstacle.
+/// Maximum number of corners of an obstacle.
 inline constexpr int32_t MAX_CORNERS = 8;
 
-/// Whether rays read obstacles by that fault; they then meet no side of one.
+/// Whether rays see obstacles with that fault, in which case they do not meet the sides of obstacles.
 HEDON_FN bool misreads_obstacles(const World& world) {
   return world.shape->obstacles > 0 && world.config->obstacle.sight == ObstacleSight::released;
 }
 
-/// One obstacle by its own frame, in which its first corner lies ahead, along +y, and its sides run clockwise.
+/// One obstacle in its own frame, in which its first corner is ahead, along +y, and its sides run clockwise.
 struct ObstacleFrame {
   Vec2 center;
   float cosine, sine;  ///< of the frame's angle
@@ -41,7 +41,7 @@ HEDON_FN ObstacleFrame frame_of(const World& world, int32_t obstacle, float per_
   return {center, arm.y / radius, -arm.x / radius, radius * per_side};
 }
 
-/// Where the fault meets an obstacle, as a share of the ray from `start` along `way`; 2 where it does not.
+/// Where a ray with the fault meets an obstacle, as a share of the ray from `start` along `way`; 2 if it does not.
 HEDON_FN float misread_share(const ObstacleFrame& frame, const Vec2* normals, int32_t corners, Vec2 start, Vec2 way) {
   const Vec2 from = frame.turned(start) + frame.center, along = frame.turned(way);
   float entry = 2.0f, exit = 1.0f;
@@ -55,8 +55,8 @@ HEDON_FN float misread_share(const ObstacleFrame& frame, const Vec2* normals, in
   return entry >= 0.0f && entry <= exit ? entry : 2.0f;
 }
 
-/// Puts what the rays first, first + stride … read of obstacles into an observation, where that is nearer than what a
-/// ray has met. Types are still those of the world.
+/// Adds obstacles seen by the rays first, first + stride … to an observation, if they are nearer than what a ray has
+/// met so far. Types are still numbered as in the world.
 HEDON_FN void misread_obstacles(const World& world, const Species& species, const RayFan& fan, int32_t first,
                                 int32_t stride, PackedObservation& out) {
   const int32_t corners = world.config->obstacle.corners;

@@ -21,7 +21,7 @@ HEDON_FN void scale(float& number, double factor, float low, float high) {
     number = scaled > static_cast<double>(high) ? high : static_cast<float>(scaled);
 }
 
-/// Multiplies the number that a gene sets. What the engine has only in its own units is multiplied there.
+/// Multiplies the number that a gene sets, or its converted value if the engine has it only in other units.
 HEDON_FN void scale_setting(Species& own, const SettingGene& gene, double factor) {
   if (gene.sets == GenomeSet::motor_force_scale) {
     scale(own.layout.min_force, factor, -MAX_FORCE, MAX_FORCE);
@@ -32,14 +32,13 @@ HEDON_FN void scale_setting(Species& own, const SettingGene& gene, double factor
   scale(*found.number, factor, found.low, found.high);
 }
 
-/// The factor that a gene of a genome stands for. A genome from elsewhere may have genes beyond the limit of this
-/// config.
+/// The factor that a gene stands for. A genome from another source may have genes beyond the limit of this config.
 HEDON_FN double factor_of(const SpeciesLayout& layout, const SettingGene& gene, const float* genome) {
   const float limit = layout.genes[gene.gene].limit();
   return power_of_ten(clip(genome[gene.gene], -limit, limit));
 }
 
-/// The radius of an agent with this genome: `smallest` and `largest` are those that its genes can make.
+/// The radius of an agent with this genome; `smallest` and `largest` are the limits that its genes can reach.
 HEDON_FN float radius_by(const Species& common, const float* genome, const BodyShape& smallest,
                          const BodyShape& largest) {
   float radius = common.config.body.radius;
@@ -59,8 +58,9 @@ HEDON_FN bool sets_body(const SpeciesLayout& layout) {
   return found;
 }
 
-/// A species with all genes that set numbers at one end of their limits. It is large: not for a step.
-/// sign   -1 for the least of each number, 1 for the largest
+/// A species in which all genes that set numbers are at one of their limits. The struct is large; do not use it within
+/// a step.
+/// sign   -1 for the smallest value of each number, 1 for the largest
 HEDON_FN Species extreme(const Species& common, float sign) {
   Species own = common;
   const SpeciesLayout& layout = common.layout;

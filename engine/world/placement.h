@@ -1,4 +1,4 @@
-/// Where something new may be placed: inside the arena, without overlap.
+/// Tests whether something new fits in a place: inside the arena, without overlap.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ HEDON_FN bool clear_of_walls(const World& world, Vec2 position, float radius, in
   return true;
 }
 
-/// Whether a point lies in an obstacle. Its sides run clockwise.
+/// Whether a point is inside an obstacle, whose sides run clockwise.
 HEDON_FN bool in_obstacle(const World& world, Vec2 position) {
   const int32_t corners = world.config->obstacle.corners;
   for (int32_t i = 0; i < world.shape->obstacles; ++i) {
@@ -38,7 +38,7 @@ HEDON_FN bool in_obstacle(const World& world, Vec2 position) {
   return false;
 }
 
-/// Whether a disc is inside the arena, touches no wall and no obstacle.
+/// Whether a disc is inside the arena and touches no wall and no obstacle.
 HEDON_FN bool inside_arena(const World& world, Vec2 position, float radius) {
   return clear_of_walls(world, position, radius, world.shape->walls) && !in_obstacle(world, position);
 }

@@ -14,9 +14,9 @@
 
 namespace hedon {
 
-/// Lists the living by ascending slot. A team divides them in this order, so that each member's part of every array is
-/// contiguous. In the order of ids, slots of two members would share most cache lines, which would then move back and
-/// forth between the cores.
+/// Lists the living agents by ascending slot. A team divides them in this order, so that each member's part of every
+/// array is contiguous. In the order of ids, slots of two members would share most cache lines, which would then move
+/// back and forth between the cores.
 template <class Crew>
 HEDON_FN void list_by_slot(const Crew& crew, World& world) {
   crew.select(
@@ -24,7 +24,7 @@ HEDON_FN void list_by_slot(const Crew& crew, World& world) {
       [&](int32_t at, int32_t slot) { world.scratch.by_slot[at] = slot; });
 }
 
-/// Takes a slot from those of a species that are free; at least one must be.
+/// Takes a free slot of a species; there must be one.
 HEDON_FN int32_t take_free_slot(const World& world, int32_t species) {
   return world.state.free[world.shape->of[species].first_slot + --world.state.free_count[species]];
 }
@@ -34,7 +34,8 @@ HEDON_FN void give_back_slot(const World& world, int32_t slot) {
   world.state.free[world.shape->of[species].first_slot + world.state.free_count[species]++] = slot;
 }
 
-/// A body at rest with no history and the next id, last in the living order. The caller gives it network and genome.
+/// Adds an agent with the next id, a body at rest and no history, last in the living order. The caller gives it its
+/// network and genome.
 HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle, double energy, int64_t birth_step) {
   WorldState& state = world.state;
   WorldHead& head = world.head();
@@ -70,7 +71,7 @@ HEDON_FN int32_t spawn(World& world, int32_t species, Vec2 position, float angle
   return slot;
 }
 
-/// An agent without parents: with a new network and a genome of its own. Those of a new world are born at step 0.
+/// Adds an agent without parents, with a new network and a newly drawn genome. In a new world, they are born at step 0.
 HEDON_FN int32_t spawn_founder(World& world, int32_t species, Vec2 position, float angle, double energy,
                                int64_t birth_step = 0) {
   const int32_t slot = spawn(world, species, position, angle, energy, birth_step);
@@ -120,7 +121,7 @@ HEDON_FN float child_radius(const World& world, int32_t parent, int32_t mate) {
   return radius_of_genome(world, world.shape->species_of(parent), genome);
 }
 
-/// The heading of a child with this id that is born in this step.
+/// The heading of the child with this id, born in this step.
 HEDON_FN float child_heading(const World& world, uint32_t id) {
   const bool shared = world.config->world.child_heading == WorldChildHeading::shared;
   const uint32_t step = shared ? static_cast<uint32_t>(world.head().step) : 0;
@@ -128,7 +129,7 @@ HEDON_FN float child_heading(const World& world, uint32_t id) {
   return wrap_angle(TWO_PI_F * to_uniform(bits.word[0]));
 }
 
-/// Takes from a parent what it gives to a child of `parents` parents of each of its stores, and adds it to `given`.
+/// Takes a parent's contribution to a child of `parents` parents from each of its stores, and adds it to `given`.
 HEDON_FN void give_child_shares(World& world, int32_t parent, int32_t parents, double* given) {
   const Species& species = world.species(parent);
   for (int32_t i = 0; i < species.stores(); ++i) {
@@ -143,8 +144,8 @@ HEDON_FN void give_child_shares(World& world, int32_t parent, int32_t parents, d
   if (world.shape->counts_births) world.state.births[parent] += 1;
 }
 
-/// A child of `parent`, and of `mate` unless that is -1, at `position`: part of their stores, a genome with mutation,
-/// and a network, by default a new one that has learned nothing.
+/// Adds a child of `parent`, and of `mate` unless that is -1, at `position`. It gets part of their stores, a mutated
+/// genome, and a network, by default a new one that has learned nothing.
 HEDON_FN void spawn_child(World& world, int32_t parent, int32_t mate, Vec2 position) {
   const WorldState& state = world.state;
   WorldHead& head = world.head();
@@ -168,7 +169,8 @@ HEDON_FN void spawn_child(World& world, int32_t parent, int32_t mate, Vec2 posit
   if (inherits_late(world)) {
     note_newborn(world, parent, child.agent_id);
     express_settings(world, slot);
-    forget_updates(world, slot);  // it never learns with them, and a checkpoint does not hold those of free slots
+    forget_updates(world,
+                   slot);  // they are never used again, and a checkpoint does not contain the updates of free slots
   } else {
     give_child_network(world, parent, slot);
     make_child_genome(world, parent, mate, id, world.genome(slot));
@@ -183,7 +185,7 @@ HEDON_FN Cause cause_of_death(const World& world, int32_t slot) {
   return world.scratch.starved[slot] != 0 ? Cause::starved : Cause::age_energy;
 }
 
-/// Counts a death by its cause, in worlds where there is more than one.
+/// Counts a death by its cause, in worlds with more than one cause.
 HEDON_FN void count_cause(const World& world, int32_t slot) {
   if (!world.shape->causes) return;
   HuntCounters& counters = world.state.hunt_counters[world.shape->species_of(slot)];
@@ -193,12 +195,13 @@ HEDON_FN void count_cause(const World& world, int32_t slot) {
   if (cause == Cause::eaten) counters.energy_prey += world.state.life[slot].energy;
 }
 
-/// The row for the next death. Nobody may ever read them: when all rows are taken, the oldest is replaced, and counted.
+/// The row for the next death. Rows may never be read, so when all are taken, the oldest is replaced and counted as
+/// lost.
 HEDON_FN int64_t claim_death_row(WorldHead& head, int32_t rows) {
   return head.death_log_count < rows ? head.death_log_count++ : head.death_log_lost++ % rows;
 }
 
-/// Removes the agent in `slot` and keeps its life for the records. The caller updates the living order.
+/// Removes the agent in `slot` and saves its life for the records. The caller updates the living order.
 HEDON_FN void kill(World& world, int32_t slot) {
   const WorldState& state = world.state;
   WorldHead& head = world.head();
@@ -226,7 +229,7 @@ HEDON_FN void kill(World& world, int32_t slot) {
 /// Tries per founder or food of a new world; a half-full arena needs a few.
 inline constexpr int32_t TRIES = 20000;
 
-/// Looks for a free position for the founder of this number, anywhere in the arena.
+/// Looks for a free position for the founder with this number, anywhere in the arena.
 HEDON_FN bool find_founder_position(const World& world, int32_t number, float radius, Vec2* position) {
   const ArenaConfig& arena = world.config->arena;
   const RandomStream random{world.seed, Purpose::initial_place, static_cast<uint32_t>(number), 0};
@@ -254,7 +257,7 @@ HEDON_FN void init_founders(World& world) {
   }
 }
 
-/// Places the living of a new world again, in their order, since their bodies are others now.
+/// Places the living agents of a new world again, in their order, since their bodies have changed.
 HEDON_FN void place_founders_again(World& world) {
   const WorldState& state = world.state;
   const BodyState& body = state.physics.bodies;

@@ -1,4 +1,5 @@
-/// Calls the ray kernel for an agent: which circles it may hit, in which direction its rays go, what is read next.
+/// Calls the ray kernel for an agent, with the circles it may hit, the directions of its rays, and the data to
+/// prefetch.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,7 @@
 
 namespace hedon {
 
-/// The weights of the square layer that the agent in `slot` acts with.
+/// The weights of the square layer with which the agent in `slot` acts.
 HEDON_FN Rows square_layer(const World& world, int32_t slot) {
   const ActingNetwork network = world.network(slot);
   const int32_t at = world.species(slot).network.w2();
@@ -45,7 +46,7 @@ HEDON_FN RayFan make_fan(const World& world, int32_t slot, Vec2 forward) {
   return fan;
 }
 
-/// Leaves out the circles of types that a species does not see.
+/// Removes the circles of types that a species does not see.
 HEDON_FN void drop_unseen(const RayScene& scene, const Channels& sight, RayCandidates& candidates) {
   for (int32_t a = 0; a < RAY_ARCS; ++a) {
     int32_t kept = 0;
@@ -57,7 +58,7 @@ HEDON_FN void drop_unseen(const RayScene& scene, const Channels& sight, RayCandi
   }
 }
 
-/// Casts the rays of the agent in `slot`; `rank` is that of the calling member.
+/// Casts the rays of the agent in `slot`; `rank` is the rank of the calling member.
 HEDON_FN void cast_agent_rays(const World& world, int32_t slot, Vec2 forward, int rank, PackedObservation& out) {
   const Species& species = world.species(slot);
   const RayTargets targets = ray_targets(world);

@@ -1,5 +1,5 @@
-/// Rules of the caller: functions that compute for all agents of a species at once what they are paid, or how likely
-/// they die or breed.
+/// Rules of the caller: functions that compute, for all agents of a species at once, their rewards or their chances of
+/// dying or of having a child.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace hedon {
 
-/// What the config itself would give in place of a rule.
+/// The value that the config would give without a rule.
 HEDON_FN double own_answer(const World& world, int32_t slot, RuleUse use) {
   switch (use) {
     case RuleUse::reward:
@@ -42,17 +42,17 @@ HEDON_FN void fill_record(const World& world, int32_t slot, RuleUse use, double*
   for (int32_t m = 0; m < config.reward.memory; ++m) *record++ = memory[m];
 }
 
-/// Asks the rule of a species about the first `count` agents of `scratch.asked`.
+/// Calls the rule of a species for the first `count` agents of `scratch.asked`.
 HEDON_FN void ask(World& world, int32_t s, RuleUse use, int32_t count) {
   const StepScratch& scratch = world.scratch;
   for (int32_t i = 0; i < count; ++i) {
     fill_record(world, scratch.asked[i], use, &scratch.record[int64_t{i} * world.shape->of[s].record]);
-    scratch.answer[i] = static_cast<double>(NAN);  // stays where the rule fails half-way
+    scratch.answer[i] = static_cast<double>(NAN);  // remains if the rule fails partway
   }
   world.rule[s][static_cast<int32_t>(use)](count, scratch.record.data, scratch.answer.data);
 }
 
-/// Asks the rule of a species about all of its agents, in the order of their ids. Returns how many there are.
+/// Calls the rule of a species for all of its agents, in the order of their ids. Returns how many there are.
 HEDON_FN int32_t ask_all(World& world, int32_t s, RuleUse use) {
   const Species& species = world.shape->of[s];
   int32_t count = 0;
@@ -64,18 +64,18 @@ HEDON_FN int32_t ask_all(World& world, int32_t s, RuleUse use) {
   return count;
 }
 
-/// What a rule has left in the memory of the agent that was number `i`.
+/// Copies the memory that a rule has left for agent number `i`.
 HEDON_FN const double* memory_after(const World& world, int32_t s, int32_t i) {
   const Species& species = world.shape->of[s];
   return &world.scratch.record[int64_t{i + 1} * species.record - species.config.reward.memory];
 }
 
-/// A rule of a species has given the agent in `slot` what it cannot be given.
+/// Raises a fault: the rule of a species gave the agent in `slot` an invalid value.
 HEDON_FN void fail_rule(const World& world, int32_t s, RuleUse use, Status status, int32_t slot, double value) {
   world.fail(status, world.state.life[slot].agent_id, value, s * RULE_USES + static_cast<int32_t>(use));
 }
 
-/// Pays the agents of a species by its rule.
+/// Gives the agents of a species the rewards from its rule.
 HEDON_FN void pay_by_rule(World& world, int32_t s) {
   const WorldState& state = world.state;
   const int32_t memory = world.shape->of[s].config.reward.memory;
@@ -87,7 +87,8 @@ HEDON_FN void pay_by_rule(World& world, int32_t s) {
       state.memory[int64_t{slot} * world.shape->memory + m] = kept[m];
       if (!is_finite(kept[m])) return fail_rule(world, s, RuleUse::reward, Status::rule_not_finite, slot, kept[m]);
     }
-    const float paid = static_cast<float>(world.scratch.answer[i]);  // infinite where the answer is beyond a float
+    const float paid =
+        static_cast<float>(world.scratch.answer[i]);  // infinite if the answer exceeds the range of a float
     if (!is_finite(static_cast<double>(paid)))
       return fail_rule(world, s, RuleUse::reward, Status::rule_not_finite, slot, world.scratch.answer[i]);
     const int64_t row = slot * int64_t{world.shape->rollout} + world.kept(slot, world.window_step());
@@ -96,7 +97,7 @@ HEDON_FN void pay_by_rule(World& world, int32_t s) {
   }
 }
 
-/// The chance that a rule gave as its answer `i`, which must be one; a rule of chances leaves memories as they are.
+/// The chance that a rule gave as its answer `i`. It must be a probability, and the rule may not have changed memories.
 HEDON_FN double answered_chance(const World& world, int32_t s, RuleUse use, int32_t i) {
   const int32_t slot = world.scratch.asked[i];
   const double chance = world.scratch.answer[i];
@@ -109,7 +110,7 @@ HEDON_FN double answered_chance(const World& world, int32_t s, RuleUse use, int3
   return chance;
 }
 
-/// Asks the rule of its species for a chance of the agent in `slot` alone.
+/// Calls the rule of its species for a chance of the agent in `slot` only.
 HEDON_FN double ask_chance(World& world, int32_t slot, RuleUse use) {
   const int32_t s = world.shape->species_of(slot);
   world.scratch.asked[0] = slot;

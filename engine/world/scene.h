@@ -10,8 +10,8 @@
 
 namespace hedon {
 
-/// Collects the circles that rays may hit and sorts them by cell; within a cell, the living come in their order, then
-/// the foods, then those just eaten if they are seen.
+/// Collects the circles that rays may hit and sorts them by cell. Within a cell, living agents come first, in their
+/// order, then foods, then foods just eaten if they are seen.
 template <class Crew>
 HEDON_FN void gather_scene(const Crew& crew, World& world) {
   RayScene& scene = world.scene;
@@ -20,7 +20,7 @@ HEDON_FN void gather_scene(const Crew& crew, World& world) {
   const RayGrid& grid = shape.scene;
   const BodyState& body = state.physics.bodies;
   const StaticCircles& food = state.physics.circles;
-  const int32_t foods = world.head().living_count, eaten = foods + shape.foods;  // where those begin
+  const int32_t foods = world.head().living_count, eaten = foods + shape.foods;  // where these begin
   const auto place_of = [&](int32_t circle) {
     if (circle < foods) return Vec2{body.x[state.living[circle]], body.y[state.living[circle]]};
     if (circle < eaten) return Vec2{food.x[circle - foods], food.y[circle - foods]};
@@ -53,8 +53,8 @@ HEDON_FN void gather_scene(const Crew& crew, World& world) {
             put);
 }
 
-/// Calls f(circle) for the circles in the cells that a square around a point touches: for all within `reach` [u], and
-/// for some others.
+/// Calls f(circle) for the circles in the cells that a square around a point touches: a superset of the circles within
+/// `reach` [u].
 template <class F>
 HEDON_FN void for_each_circle_in(const World& world, Vec2 center, float reach, F&& f) {
   const RayGrid& grid = world.shape->scene;
@@ -68,7 +68,7 @@ HEDON_FN void for_each_circle_in(const World& world, Vec2 center, float reach, F
   }
 }
 
-/// The scene in the form for the kernels.
+/// The scene in the form that the kernels use.
 HEDON_FN RayTargets ray_targets(const World& world) {
   const RayScene& scene = world.scene;
   return {scene.x.data,
@@ -116,7 +116,7 @@ HEDON_FN Box box_of(Vec2 right, Vec2 left, float reach, bool convex) {
 }
 
 /// Finds the circles in the cells that a rectangle around the fan touches, grown by the radius of the largest circle.
-/// kernel   what has a `cull_circles`
+/// kernel   an object with a `cull_circles`
 template <class Culler>
 HEDON_FN void find_circles(const Culler& kernel, const World& world, const RayTargets& targets, const RayFan& fan,
                            const Box& box, RayCandidates& candidates) {

@@ -1,4 +1,4 @@
-/// Factors that follow time: growth, capacity and hazard may have one.
+/// Factors that change over time, for growth, capacity and hazard.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace hedon {
 
-/// The factor in step `step`. Before the first point it is that of the first, after the last that of the last; with a
-/// period, and linear, it goes from the last point to the first of the next period.
+/// The factor in step `step`. It is constant before the first point and after the last. With a period and linear
+/// interpolation, it changes from the last point to the first point of the next period.
 HEDON_FN double factor_at(const ScheduleConfig& schedule, int64_t step) {
   const int32_t count = schedule.points.count;
   if (count == 0) return 1.0;

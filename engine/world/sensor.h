@@ -14,7 +14,7 @@
 
 namespace hedon {
 
-/// Keeps the position of an agent at the start of a step.
+/// Stores the position of an agent at the start of a step.
 HEDON_FN void note_start(World& world, int32_t slot) {
   const BodyState& body = world.state.physics.bodies;
   StepScratch& scratch = world.scratch;
@@ -41,14 +41,14 @@ HEDON_FN void sense_body(const World& world, int32_t slot, PackedObservation& ou
   for (int32_t d = 0; d < observed.count; ++d) set_dense(out, d, read_channel(world, slot, out, observed[d]));
 }
 
-/// Writes the observation of the agent in `slot`, after `note_start`; `rank` is that of the calling member. Needs the
-/// scene.
+/// Writes the observation of the agent in `slot`, after `note_start`; `rank` is the rank of the calling member. Needs
+/// the scene.
 HEDON_FN void observe(const World& world, int32_t slot, int rank, PackedObservation& out) {
   cast_agent_rays(world, slot, forward_of(world, slot), rank, out);
   sense_body(world, slot, out);
 }
 
-/// Sine and cosine of an angle from those of a near angle, by rotation with a short series; of a far one, directly.
+/// Sine and cosine of an angle: by rotation of a known pair with a short series if the angles are close, else directly.
 HEDON_FN void turn(float sine, float cosine, float start_angle, float angle, float* out_sine, float* out_cosine) {
   const float delta = angle - start_angle;
   if (!(fabsf(delta) < 0.125f)) {
@@ -62,7 +62,7 @@ HEDON_FN void turn(float sine, float cosine, float start_angle, float angle, flo
   *out_cosine = cosine * c - sine * s;
 }
 
-/// The visitor of the physics: notes which sectors are touched, and which food a mouth touches.
+/// The visitor of the physics: records which sectors are touched, and which food a mouth touches.
 struct TouchVisitor {
   World* world;
 
@@ -103,7 +103,7 @@ struct TouchVisitor {
       crew.set_bits(world->state.touch_more[slot], uint64_t{1} << (touched - 64));
   }
 
-  /// Deletes the notes about a body, before each try of a step.
+  /// Discards the records about a body, before each try of a step.
   HEDON_FN void on_start(int32_t slot) {
     world->state.touch[slot] = 0;
     if (world->state.touch_more.count > 0) world->state.touch_more[slot] = 0;

@@ -47,7 +47,7 @@ struct WorldShape {
   int32_t death_log_rows;  ///< deaths that can wait for the reader
   int32_t newborns;        ///< births of a window that can wait for their genomes
   int32_t steps;           ///< of a window
-  int32_t rollout;         ///< steps of which rollouts are kept: those of a window, or 1 if no species learns
+  int32_t rollout;         ///< steps kept in a rollout: a whole window, or 1 if no species learns
   int32_t genes;           ///< of the longest genome: the length of a row
   int32_t params;          ///< of the largest network
   int32_t pairs;           ///< of weights of the largest network
@@ -55,23 +55,23 @@ struct WorldShape {
   bool resident_slots;     ///< only agents in slots that were taken when the window began have children
   bool networks;           ///< some species acts by networks
   bool learning;           ///< some species learns
-  bool external;           ///< some species is told what to do
-  bool ruled;              ///< rules of the caller pay some species, or decide when it dies or breeds
+  bool external;           ///< the caller controls some species
+  bool ruled;              ///< rules of the caller decide rewards, deaths or births of some species
   int32_t memory;          ///< most numbers that a rule keeps for each agent
   int32_t record;          ///< of the longest record that a rule gets
   int32_t near;            ///< most queries of a species
-  int32_t last;            ///< most numbers of a step that are kept for the next observation
-  bool counts_births;      ///< some species senses, or is paid for, the children that it had
+  int32_t last;            ///< most values of a step that are kept for the next observation
+  bool counts_births;      ///< some species senses, or is rewarded for, its children
   int32_t scents;          ///< of the longest row of smells: channels times noses
   bool packed;             ///< some species acts with weights in pairs
-  bool own;                ///< genes set numbers of some species, so agents have them of their own
+  bool own;                ///< genes set numbers of some species, so its agents have individual values
   bool instinct;           ///< some species passes on the networks that it was born with
   bool mating;             ///< some species has two parents
   int32_t stores;          ///< most stores of a species
   bool gated;              ///< some species must hold something to eat some food
   bool hunting;            ///< some species eats agents, of another species or its own
   int32_t claims;          ///< most claims of eaters on their prey in a step
-  bool causes;             ///< agents die of more than age and energy: some starve at once, or are eaten
+  bool causes;             ///< agents die of causes other than age and energy: some starve at once, or are eaten
   int32_t lines;           ///< cache lines of an observation
   int32_t food_offset[MAX_FOOD_KINDS + 1];  ///< kind k owns food slots [offset[k], offset[k + 1])
   RayGrid scene;
@@ -124,7 +124,7 @@ HEDON_FN BodyTable make_body_table(const Config& config, const WorldShape& shape
   return table;
 }
 
-/// Most claims in a step: one of each agent, or of each pair of bodies that the physics keeps, in both directions.
+/// Most claims in a step: one per agent, or one in each direction per pair of bodies that the physics keeps.
 HEDON_FN int32_t count_claims(const Config& config, const WorldShape& shape) {
   if (config.world.prey_at_mouth == WorldPreyAtMouth::nearest) return shape.capacity;
   return static_cast<int32_t>(2 * physics_capacity(shape.capacity, shape.foods, shape.walls, config.arena.width,

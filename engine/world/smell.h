@@ -1,4 +1,4 @@
-/// Smell: what of each type lies near an agent's noses. Sources are points that smell by e^(-decay · distance).
+/// Smell: how much of each type is near an agent's noses. Sources are points with intensity e^(-decay · distance).
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace hedon {
 
-/// Distance from which on all sources of a world together add less than SMELL_ERROR [u].
+/// Distance beyond which all sources of a world together add less than SMELL_ERROR [u].
 inline constexpr double SMELL_ERROR = 1e-4;
 HEDON_FN float smell_reach(const World& world, float decay) {
   return static_cast<float>(log_double(world.shape->circles / SMELL_ERROR) / decay);
 }
 
-/// Place of nose `n`: of two, the first is to the right. One nose lies ahead.
+/// Place of nose `n`. One nose is ahead; of two, the first is on the right.
 HEDON_FN Vec2 nose_at(const Species& species, int32_t n, Vec2 center, Vec2 forward) {
   const SensorConfig& sensor = species.config.sensor;
   if (sensor.noses == 1) return center + species.body.radius * forward;
@@ -24,8 +24,8 @@ HEDON_FN Vec2 nose_at(const Species& species, int32_t n, Vec2 center, Vec2 forwa
   return center + species.body.radius * (species.nose_cosine * forward + sine * Vec2{-forward.y, forward.x});
 }
 
-/// What one nose smells of each channel: min(1, Σ e^(-decay · d)) over the circles of the scene but its owner's, in the
-/// order of the scene. Needs the scene.
+/// The intensity at one nose in each channel: min(1, Σ e^(-decay · d)) over the circles of the scene except the agent's
+/// own, in the order of the scene. Needs the scene.
 HEDON_FN void smell_at(const World& world, const Species& species, Vec2 nose, int32_t own, float* smelled) {
   const RayScene& scene = world.scene;
   const float decay = species.config.sensor.smell_decay;
@@ -42,7 +42,7 @@ HEDON_FN void smell_at(const World& world, const Species& species, Vec2 nose, in
   for (int32_t c = 0; c < channels; ++c) smelled[c] = sum[c] < 1.0 ? static_cast<float>(sum[c]) : 1.0f;
 }
 
-/// Smells with all noses of the agent in `slot`, into its row of scratch: by channel, then by nose.
+/// Writes the smells at all noses of the agent in `slot` to its row of scratch: by channel, then by nose.
 HEDON_FN void smell(const World& world, int32_t slot, Vec2 forward) {
   const Species& species = world.species(slot);
   const SensorConfig& sensor = species.config.sensor;

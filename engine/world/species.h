@@ -1,4 +1,4 @@
-/// One species of a world: its settings and what follows from them, computed once and never changed.
+/// One species of a world: its settings and the data derived from them, computed once and never changed.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace hedon {
 
-/// The number by which a sense tells each type apart; -1 for types that it does not meet.
+/// The channel of each type in a sense; -1 for types that it does not meet.
 struct Channels {
   int8_t of_type[MAX_TYPES];
   bool in_order;  ///< every type has the channel of its own number: the channel is the type
@@ -26,14 +26,14 @@ HEDON_FN Channels make_channels(const FixedList<int32_t, MAX_TYPES>& list, int32
   return channels;
 }
 
-/// Those of sight: what looks like another type has the channel of that one.
+/// The channels of sight, in which a type that looks like another one shares its channel.
 HEDON_FN Channels make_sight(const SpeciesLayout& layout, int32_t types) {
   Channels sight = make_channels(layout.sees, types);
   for (int32_t type = 0; type < types; ++type) sight.of_type[type] = sight.of_type[layout.looks[type]];
   return sight;
 }
 
-/// All in one piece of memory, without pointers: agents whose genes set some of it have one of their own.
+/// One piece of memory without pointers, since agents whose genes set parts of it have their own copies.
 struct Species {
   SpeciesConfig config;
   SpeciesLayout layout;
@@ -44,7 +44,7 @@ struct Species {
   Channels sight, touch, scent;
   bool has_network;                      ///< its agents act by networks
   bool learns;                           ///< these networks learn
-  bool observes;                         ///< its network, or its reward, reads what its rays meet
+  bool observes;                         ///< its network, or its reward, uses its rays
   int32_t record;                        ///< numbers that a rule of the caller gets for one agent
   float motor_arm;                       ///< lever of each motor about the center [u]
   float max_force;                       ///< largest norm of the two forces: the norm of (f_max, f_max)
@@ -86,7 +86,7 @@ HEDON_FN void set_directions(Species& species) {
   }
 }
 
-/// What follows from the numbers of a species.
+/// Computes the data derived from the numbers of a species.
 HEDON_FN void derive(Species& species) {
   const SpeciesConfig& config = species.config;
   species.body = make_disc(config.body.radius, config.body.density);

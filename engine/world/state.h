@@ -73,7 +73,7 @@ struct HuntCounters {
 /// Sums since the world began, of one species, in worlds with obstacles.
 struct ObstacleCounters {
   int64_t obstacles_touched;  ///< that did harm, each once per agent and step
-  double energy_damage;       ///< what touching them cost
+  double energy_damage;       ///< cost of touching them
 
   HEDON_FIELDS(ObstacleCounters, obstacles_touched, energy_damage)
 };
@@ -141,7 +141,7 @@ struct WorldState {
   Array<uint64_t> touch;  // bit channel * sectors + sector, of the last step
   PhysicsState physics;   // bodies by slot; foods as circles, of which kind k owns a fixed range; walls; impulses
   Array<int32_t> species;
-  Array<Species> own;          // where genes set numbers: those of the agent, which follow from its genome
+  Array<Species> own;          // if genes set numbers: the agent's own species, which follows from its genome
   Array<uint64_t> touch_more;  // bits of touch from 64 on
   Array<int32_t> digestion;    // steps until an agent can eat another one
   Array<HuntCounters> hunt_counters;
@@ -149,25 +149,26 @@ struct WorldState {
 
   Array<int64_t> ready_until;  // step until which an agent waits for a second parent
   Array<int32_t> mate_id;      // the second parent; -1 for founders
-  Array<double> store;         // (slots, stores) held of each store but energy; past those of a species: 0
-  Array<float> obstacle;       // (obstacles, corners · 2) where their corners are: follows from the config and the seed
+  Array<double> store;         // (slots, stores) amount in each store except energy; 0 past the stores of a species
+  Array<float>
+      obstacle;  // (obstacles, corners · 2) positions of their corners, which follow from the config and the seed
   Array<ObstacleCounters> obstacle_counters;
 
-  Array<float> external_action;  // (slots, 2) what the caller told agents to do, before the sigmoid
-  Array<double> memory;          // what the rule of its species keeps for each agent
-  Array<float> last;             // (slots, last) what of the last step is observed in the next, before it is scaled
+  Array<float> external_action;  // (slots, 2) actions set by the caller, before the sigmoid
+  Array<double> memory;          // kept for each agent by the rule of its species
+  Array<float> last;             // (slots, last) unscaled values of the last step that are observed in the next
   Array<int32_t> births;         // children that an agent had in the last step
 
   // Networks and learners, by slot.
   Array<float> params;
-  Array<float> initial_params;  // what an agent was born with
+  Array<float> initial_params;  // the parameters that an agent was born with
   Array<float> folded_bias;     // derived from params
-  Array<float> packed_weights;  // derived from params; not used where agents act with params themselves
+  Array<float> packed_weights;  // derived from params; not used if agents act with params themselves
   Array<float> first_moment;
   Array<float> second_moment;
   Array<int64_t> updates;  // Adam steps done in this life
 
-  // Rules that reach over steps or windows.
+  // For rules that span steps or windows.
   Array<EatenFood> eaten_food;
   Array<uint8_t> resident_slot;  // 1 for slots that were taken when the window began
   Array<Newborn> newborn;        // of this window, in the order of birth
@@ -188,7 +189,7 @@ struct WorldState {
   Array<int32_t> death_log_mate;
   Array<int32_t> death_log_eaten;
   Array<float> death_log_genome;
-  Array<double> death_log_store;  // held of each store but energy
+  Array<double> death_log_store;  // amount in each store except energy
 
   HEDON_ARRAYS(WorldState, (head, one, one, saved), (fault, one, one, derived), (counters, species, one, saved),
                (food_stock, kinds, one, saved), (alive, slots, one, derived), (living, slots, one, derived),

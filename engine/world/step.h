@@ -97,7 +97,7 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
       reward_and_fates(scratch.by_slot[i]);
     });
   } else {
-    // A predator gains from what that agent has left after this step's costs.
+    // A predator gains from what its prey has left after this step's costs.
     group.for_each(head.living_count, [&](int32_t i) { spend_energy(world, scratch.by_slot[i]); });
     group.once([&] { hunt(world); });
     group.for_each(head.living_count, [&](int32_t i) { reward_and_fates(scratch.by_slot[i]); });

@@ -1,4 +1,4 @@
-/// What agents hold: energy, and the other stores of their species. One rule for all of them.
+/// The stores of agents: energy, and the others of their species, all under one rule.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,14 @@
 
 namespace hedon {
 
-/// What part of its force is left to an agent that holds this much of a store that weakens its motors: 1 without any.
+/// The share of its force left to an agent with this amount in a store that weakens its motors; 1 if the store is
+/// empty.
 HEDON_FN double strength(float threshold, double held) {
   return (1.0 - logistic(held - threshold)) / (1.0 - logistic(-static_cast<double>(threshold)));
 }
 
-/// What this step's meals give the agent in `slot` of a store. Its diet's factors are on energy alone.
+/// The amount that this step's meals add to a store of the agent in `slot`. The factors of its diet apply to energy
+/// only.
 HEDON_FN double gained(const World& world, int32_t slot, int32_t store) {
   const Species& species = world.species(slot);
   const SpeciesLayout& layout = species.layout;
@@ -28,9 +30,9 @@ HEDON_FN double gained(const World& world, int32_t slot, int32_t store) {
   return sum;
 }
 
-/// Fills and empties a store of the agent in `slot` by this step's meals and costs; energy has a ledger.
+/// Applies this step's meals and costs to a store of the agent in `slot`; energy is also recorded in the ledger.
 /// force    that its motors applied
-/// damage   what obstacles cost it, in energy
+/// damage   energy lost to obstacles
 HEDON_FN void settle_store(const World& world, int32_t slot, int32_t store, double force, double damage) {
   const StoreConfig& config = store_of(world.species(slot).config, store);
   const StepScratch& scratch = world.scratch;
@@ -51,7 +53,7 @@ HEDON_FN void settle_store(const World& world, int32_t slot, int32_t store, doub
   scratch.energy_capped[slot] = wanted > capacity ? wanted - capacity : 0.0;
 }
 
-/// Whether the agent in `slot` holds what a food of kind `k` needs.
+/// Whether the agent in `slot` holds what it needs to eat a food of kind `k`.
 HEDON_FN bool can_digest(const World& world, int32_t slot, int32_t k) {
   if (!world.shape->gated) return true;
   const Species& species = world.species(slot);

@@ -18,7 +18,7 @@ struct RayScene {
   Array<float> x, y, radius, type;                  ///< of the circles: cell by cell, row by row of cells
   Array<int32_t> start;                             ///< first circle of each cell
   Array<int32_t> own;                               ///< index of the circle of the agent in each slot
-  Array<int32_t> slot;                              ///< of the agent that a circle is; -1 for a food
+  Array<int32_t> slot;                              ///< of the agent that a circle belongs to; -1 for a food
   Array<int32_t> cell;                              ///< of each circle, before sorting
   Array<float> wall_ax, wall_ay, wall_bx, wall_by;  ///< ends of the walls
   Array<int32_t> candidates;                        ///< see `RayCandidates`
@@ -37,7 +37,7 @@ struct Finding {
   double value;
 };
 
-/// What a query found as the step began.
+/// The answer to a query at the start of the step.
 struct Answer {
   int32_t count, kin;
   double distance;  ///< of the nearest [u]
@@ -54,22 +54,22 @@ struct StepScratch {
   Array<int32_t> meal;       ///< foods, and agents of each species, eaten in this step
   Array<double> death_draw;  ///< uniform in [0, 1)
   Array<double> energy_eaten, energy_basic, energy_action, energy_forgiven, energy_capped;
-  Array<uint8_t> starved, breeds, dies;  ///< 1 where it does
+  Array<uint8_t> starved, breeds, dies;  ///< 1 if it does
   Array<Finding> finding;                ///< of the audit at the end of a window
-  Array<double> store_before;            ///< held of each store before this step
+  Array<double> store_before;            ///< amount in each store before this step
   Array<float> smelled;                  ///< at the start of the step, by channel, then by nose
   Array<int32_t> touched;                ///< harmful obstacles that an agent touched
   Array<double> energy_damage;
   Array<int32_t> eater;                    ///< slot of the agent that gets the food, -1 for none
   Array<float> eater_distance;             ///< squared
-  Array<uint8_t> eaten;                    ///< 1 where an agent was eaten in this step
-  Array<int32_t> claim_eater, claim_prey;  ///< slots: who would eat whom
-  Array<int32_t> claim_of;       ///< index of the agent's own claim, -1 for none; not used where it may have several
+  Array<uint8_t> eaten;                    ///< 1 if the agent was eaten in this step
+  Array<int32_t> claim_eater, claim_prey;  ///< slots of both agents of a claim
+  Array<int32_t> claim_of;       ///< index of the agent's own claim, -1 for none; not used if it may have several
   Array<float> claim_distance;   ///< squared
-  Array<double> claim_gain;      ///< energy, where all claims are settled at once
-  Array<double> record, answer;  ///< of the agents that a rule is asked about, one after another
+  Array<double> claim_gain;      ///< energy, if all claims are settled at once
+  Array<double> record, answer;  ///< of the agents that a rule is called for, one after another
   Array<int32_t> asked;          ///< their slots
-  Array<Answer> near;            ///< by slot: what its queries found as the step began
+  Array<Answer> near;            ///< by slot: answers to its queries at the start of the step
   Array<int32_t> parent;
   Array<uint32_t> parent_key;
 
@@ -109,8 +109,8 @@ struct World {
 
   HEDON_FN WorldHead& head() const { return state.head[0]; }
   HEDON_FN bool ruled(int32_t slot, RuleUse use) const { return shape->ruled && species(slot).layout.has_rule(use); }
-  /// The settings of the agent in `slot` and what follows from them: those of its species, or its own if genes set
-  /// some.
+  /// The settings of the agent in `slot` and the data derived from them, which belong to its species, or to itself if
+  /// genes set some of them.
   HEDON_FN const Species& species(int32_t slot) const {
     return shape->own ? state.own[slot] : shape->of[shape->species_of(slot)];
   }
@@ -128,23 +128,23 @@ struct World {
   }
 
   HEDON_FN float* params(int32_t slot) const { return &state.params[int64_t{slot} * shape->params]; }
-  /// What the agent in `slot` was born with, in worlds that keep it.
+  /// The network that the agent in `slot` was born with, in worlds that keep it.
   HEDON_FN float* initial_params(int32_t slot) const { return &state.initial_params[int64_t{slot} * shape->params]; }
-  /// What the agent in `slot` acts with.
+  /// The network with which the agent in `slot` acts.
   HEDON_FN ActingNetwork network(int32_t slot) const {
     const bool rounded = species(slot).config.learning.acting_weights == LearningActingWeights::bfloat16;
     float* packed_weights = rounded ? &state.packed_weights[int64_t{slot} * shape->pairs] : nullptr;
     return {params(slot), &state.folded_bias[int64_t{slot} * HIDDEN], packed_weights};
   }
   HEDON_FN float* genome(int32_t slot) const { return &state.genome[int64_t{slot} * shape->genes]; }
-  /// What the agent in `slot` holds of a store of its species.
+  /// The amount in a store of the agent in `slot`.
   HEDON_FN double& held(int32_t slot, int32_t store) const {
     if (store == ENERGY) return state.life[slot].energy;
     return state.store[int64_t{slot} * (shape->stores - 1) + store - 1];
   }
   HEDON_FN double* held_before(int32_t slot) const { return &scratch.store_before[int64_t{slot} * shape->stores]; }
   HEDON_FN int32_t* meal(int32_t slot) const { return &scratch.meal[int64_t{slot} * shape->meals()]; }
-  /// The row of a rollout that holds step `t` of the window: who does not learn keeps only the present step.
+  /// The row of a rollout for step `t` of the window. Without learning, only the present step is kept.
   HEDON_FN int64_t kept(int32_t slot, int64_t t) const { return species(slot).learns ? t : 0; }
   HEDON_FN PackedObservation& observation(int32_t slot, int64_t t) const {
     ObservationLine* line = &state.observation[(slot * (int64_t{shape->rollout} + 1) + t) * shape->lines];
