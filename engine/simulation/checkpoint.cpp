@@ -47,7 +47,7 @@ struct PairImpulse {
 };
 
 /// Saves the pairs with impulses, sorted by the rank of the first body. A pair without impulse has no effect and is
-/// left out. find(second, &other) gives the saved name of a pair's second, or false if it no longer exists.
+/// omitted. find(second, &other) gives the saved name of a pair's second, or false if it no longer exists.
 template <class Find, class Take>
 void save_pairs(const World& world, const std::vector<int32_t>& rank, const PairList& list, int kind, Find&& find,
                 Take&& take) {
@@ -86,7 +86,7 @@ std::vector<int32_t> listed_ranks(const World& world, const SavedExtent& extent)
   return rank;
 }
 
-/// Calls take(SavedArray) for what a checkpoint has beside `for_each_saved`: the places of foods, and the impulses.
+/// Calls take(SavedArray) for the arrays that `for_each_saved` does not cover: the places of foods, and the impulses.
 template <class Take>
 void save_lists(const World& world, const SavedExtent& extent, Take&& take) {
   take(save_list("food.slot", extent.foods, {static_cast<int64_t>(extent.foods.size())}));
@@ -110,15 +110,15 @@ void save_lists(const World& world, const SavedExtent& extent, Take&& take) {
   save_pairs(world, rank, list.walls, 2, wall, take);
 }
 
-/// Bytes of a piece of an array, about: some fit into a cache.
+/// Approximate bytes of a piece of an array; several fit into a cache.
 constexpr int64_t PIECE = int64_t{1} << 18;
-/// Rows of a piece are a multiple of this many, so that all pieces but the last have whole words of eight bytes.
+/// A piece has a multiple of this many rows, so that all pieces but the last consist of whole eight-byte words.
 constexpr int64_t PIECE_ROWS = 8;
 
-/// Rows as long as this may lie in a file, and are asked for a little before they are read [byte].
+/// Rows of at least this length may be in a file, and are prefetched shortly before they are read [byte].
 constexpr int64_t LONG_ROW = 4096;
 
-/// Gives all arrays of a checkpoint to a sink.
+/// Passes all arrays of a checkpoint to a sink.
 void save_each(const World& world, const Memory& memory, const CheckpointSink& sink) {
   const SavedExtent extent = extent_of(world);
   std::vector<char> room;
@@ -142,7 +142,7 @@ void save_each(const World& world, const Memory& memory, const CheckpointSink& s
   });
 }
 
-/// Counts the bytes of packed worlds, or writes them where there is room for them.
+/// Counts the bytes of packed worlds, or writes them if there is a buffer.
 class Packer {
  public:
   explicit Packer(char* at) : at_(at) {}

@@ -1,7 +1,7 @@
-/// A world as named arrays of plain numbers: everything that decides its future, and nothing else.
+/// A world as named arrays of plain numbers: everything that determines its future, and nothing else.
 ///
-/// Agents are in the order of their ids, so that a checkpoint does not depend on their slots. Data that can be computed
-/// again is left out: grids, the neighbor list (except its impulses), data derived from networks, and rollouts of
+/// Agents are in the order of their ids, so that a checkpoint does not depend on their slots. Data that can be
+/// recomputed is omitted: grids, the neighbor list (except its impulses), data derived from networks, and rollouts of
 /// agents that will not learn from them. So two worlds with equal checkpoints have equal futures, bit for bit, and the
 /// digest of the checkpoint is the digest of the world.
 #pragma once
@@ -38,14 +38,15 @@ struct SavedArray : SavedHead {
 
 using Checkpoint = std::vector<SavedArray>;
 
-/// Takes the arrays of a checkpoint in turn, and each in pieces, so that nobody needs memory for all of one. Gets
-/// nothing more after it has answered false.
+/// Receives the arrays of a checkpoint in turn, each in pieces, so that no array has to be in memory as a whole. Once
+/// it has returned false, it gets nothing more.
 struct CheckpointSink {
   std::function<bool(const SavedHead&)> begin;
   std::function<bool(std::span<const char>)> piece;
 };
 
-/// A checkpoint with what a world's future does not depend on, but its reader does: its seed, and who is in which slot.
+/// A checkpoint with data that its reader needs, although the world's future does not: the seed and the slots of
+/// agents.
 struct SavedWorld {
   uint64_t seed;
   std::span<const char>

@@ -43,7 +43,7 @@ std::string words(const Limit& limit) {
   return text;
 }
 
-/// Steps rise and lie within the period; factors are within their limit.
+/// Steps ascend and are within the period; factors are within their limit.
 void check_schedule(Complaint& complaint, const std::string& path, const ScheduleConfig& schedule, const Limit& limit) {
   for (int32_t i = 0; i < schedule.points.count; ++i) {
     const SchedulePoint& point = schedule.points[i];
@@ -61,7 +61,7 @@ constexpr size_t count_fields() {
   return count;
 }
 
-/// Holds every number in a part of a config against its limit.
+/// Checks every number in a part of a config against its limit.
 template <class T>
 void check_limits(Complaint& complaint, const std::string& path, const T& value, const Limit& limit) {
   if constexpr (std::is_enum_v<T>) {
@@ -115,12 +115,12 @@ int32_t meals_of(const Config& config) {
   return config.food.count + (hunting ? config.species.count : 0);
 }
 
-/// A gene is there, or is -1 where there may be none.
+/// A gene exists, or is -1 if there may be none.
 void check_gene(Complaint& complaint, const std::string& path, const SpeciesLayout& layout, int32_t gene) {
   complaint.need(gene < layout.genes.count, path, gene, "the index of a gene");
 }
 
-/// How many numbers a source of channels has for a species.
+/// The number of values that a source of channels has for a species.
 int32_t numbers_of(ChannelSource source, const Config& config, int32_t s) {
   const SpeciesLayout& layout = config.layout[s];
   const SpeciesConfig& species = config.species[s];
@@ -157,7 +157,7 @@ int32_t numbers_of(ChannelSource source, const Config& config, int32_t s) {
   return 0;
 }
 
-/// A channel is a number that there is.
+/// A channel refers to an existing value.
 void check_channel(Complaint& complaint, const std::string& path, const Channel& channel, const Config& config,
                    int32_t s) {
   complaint.need(channel.index < numbers_of(channel.source, config, s), path + ".index", channel.index,

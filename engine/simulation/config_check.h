@@ -1,4 +1,4 @@
-/// The engine's own check of its input: its memory and its loops rely on these rules, whatever calls it.
+/// The engine's own check of its input. Its memory and its loops rely on these rules, whatever the caller.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace hedon {
 
-/// What is wrong with a config, with the path of the setting; "" if it can be run. Ranges are those of
-/// `src/hedon/config/`, or wider: users see the messages from there; this check protects the engine.
+/// What is wrong with a config, with the path of the setting; "" if it can be run. Ranges are as in
+/// `src/hedon/config/`, or wider: users see the messages from there, and this check protects the engine.
 std::string check_config(const Config& config);
 
-/// The same for the arguments besides the config.
+/// The same for the other arguments.
 /// walls        the first `outer_walls` of them make up the closed outer polygon
-/// slot_order   each slot once, or nothing
+/// slot_order   each slot once, or empty
 std::string check_arguments(const Config& config, const std::vector<Segment>& walls, int64_t outer_walls,
                             int64_t worlds, int64_t threads, const std::vector<int32_t>& slot_order);
 

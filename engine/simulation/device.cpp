@@ -7,7 +7,7 @@
 namespace hedon {
 namespace {
 
-/// Where things lie in the block that all worlds share.
+/// Offsets in the block that all worlds share.
 struct Common {
   int64_t config = 0;
   int64_t shape = up(config + static_cast<int64_t>(sizeof(Config)));
@@ -37,7 +37,7 @@ int64_t update_scratch(const Config& config) {
   return (most + 15) / 16 * 16;
 }
 
-/// Adds the time of its life to a sum.
+/// Adds its lifetime to a sum.
 class Timer {
  public:
   explicit Timer(double& sum) : sum_(sum), begun_(std::chrono::steady_clock::now()) {}
@@ -112,8 +112,8 @@ void Device::note(const char* problem) {
   if (complaint_.empty()) complaint_ = problem;
 }
 
-/// The pieces of the state that the host reads and writes between runs; neighboring ones as one. What only a step
-/// needs stays on the device.
+/// The pieces of the state that the host reads and writes between runs, with adjacent ones merged. Data needed only
+/// within a step stays on the device.
 void Device::list_pieces() {
   World& world = this->world(first_);
   const char* const base = memory(first_).data();
@@ -143,7 +143,7 @@ void Device::list_pieces() {
   });
 }
 
-/// Writes the device's version of a world, and its whole memory: also of what only a step needs.
+/// Writes the device's version of a world, and its whole memory, including data needed only within a step.
 void Device::place(int index) {
   const Common at;
   World there = world(index);
@@ -161,7 +161,7 @@ void Device::place(int index) {
   note(program_.copy_in(home(index), memory(index).data(), memory(index).size()));
 }
 
-/// all   if not, only what the host may change without saying so
+/// all   if false, only the parts that the host may change without notice
 void Device::copy_in(int index, bool all) {
   for (const Piece& piece : pieces_) {
     if (all || piece.kind == Kind::head)
@@ -169,7 +169,8 @@ void Device::copy_in(int index, bool all) {
   }
 }
 
-/// Copies the pieces of a kind. Of the death log, those rows that the head counts, so the head must be there.
+/// Copies the pieces of a kind. Of the death log, it copies the rows that the head counts, so the head must be copied
+/// first.
 void Device::copy_out(int index, Kind kind) {
   for (const Piece& piece : pieces_) {
     if (piece.kind != kind) continue;

@@ -1,8 +1,8 @@
-/// Worlds on a device with memory of its own: where they lie there, and who advances them.
+/// Worlds on a device with its own memory: their layout there, and the program that advances them.
 ///
-/// A `DeviceProgram` is what a library of a device offers: CUDA's, or in tests the emulation's. `Device` keeps the
-/// copies of a simulation's worlds. The host's worlds stay what everyone reads: after each call, what is small is
-/// copied back; networks and rollouts, which are most of a world, only when somebody wants them.
+/// A `DeviceProgram` is the interface of a device's library: CUDA's or, in tests, the emulation's. `Device` holds
+/// copies of a simulation's worlds. All readers still use the host's worlds: small data is copied back after each call,
+/// but networks and rollouts, which make up most of a world, only on request.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace hedon {
 
-/// Rooms that a world on a device has for lists of circles: one for each tile of a block.
+/// How many lists of circles a world on a device has room for: one for each tile of a block.
 inline constexpr int DEVICE_MEMBERS = 32;
 
-/// What the kernels of a device get; all pointers are the device's.
+/// The arguments of a device's kernels; all pointers are device pointers.
 struct DeviceWorlds {
   World* worlds;
   Kernel* kernel;
@@ -32,7 +32,7 @@ struct DeviceWorlds {
   int32_t params[MAX_SPECIES];  ///< of the networks of each species; 0 if it has none
 };
 
-/// The kernels of a window, for their times.
+/// The kernels of a window, for timing.
 enum class DevicePart : int32_t { step, learn, close, count };
 inline constexpr int32_t DEVICE_PARTS = static_cast<int32_t>(DevicePart::count);
 inline constexpr const char* DEVICE_PART_NAMES[] = {"step", "learn", "close"};
@@ -40,26 +40,26 @@ inline constexpr const char* DEVICE_PART_NAMES[] = {"step", "learn", "close"};
 /// Functions of a library for devices of one kind. Those that return a text return "" or what went wrong.
 struct DeviceProgram {
   const char* name;
-  uint64_t layout;                  ///< `device_layout()` of the sources that it was built from
-  int32_t widest_network;           ///< inputs of the widest network that its updates can hold
+  uint64_t layout;                  ///< `device_layout()` of the sources it was built from
+  int32_t widest_network;           ///< inputs of the widest network that it can update
   const char* (*open)();            ///< finds the devices
-  int32_t (*count)();               ///< devices there are, after `open`
-  void (*use)(int32_t device);      ///< the following calls of this thread are for this one
-  const char* (*describe)();        ///< what the device is, and what its kernels need: an object of JSON
-  int32_t (*learners_at_once)();    ///< blocks of updates that run side by side
+  int32_t (*count)();               ///< number of devices, after `open`
+  void (*use)(int32_t device);      ///< selects the device for the following calls of this thread
+  const char* (*describe)();        ///< a JSON object that describes the device and the resources of its kernels
+  int32_t (*learners_at_once)();    ///< blocks of updates that run concurrently
   void* (*reserve)(int64_t bytes);  ///< null if there is too little memory
   void (*release)(void* block);
   const char* (*copy_in)(void* to, const void* from, int64_t bytes);
   const char* (*copy_out)(void* to, const void* from, int64_t bytes);
   const char* (*fill_kernel)(Kernel* kernel);
-  const char* (*advance)(const DeviceWorlds& worlds, int64_t step, int64_t steps);  ///< begins, and does not wait
+  const char* (*advance)(const DeviceWorlds& worlds, int64_t step, int64_t steps);  ///< starts without waiting
   const char* (*finish)(double* seconds);  ///< waits; adds the seconds of each `DevicePart` since the last call
 };
 
 /// The function `hedon_device` that such a library exports.
 using DeviceEntry = const DeviceProgram* (*)();
 
-/// A number that differs where the library and the engine come from sources with other data.
+/// A number that differs if the library and the engine were built from sources with different data layouts.
 constexpr uint64_t device_layout() {
   uint64_t sum = 0;
   for (const size_t size : {sizeof(World), sizeof(WorldState), sizeof(WorldShape), sizeof(Config), sizeof(Kernel),
@@ -76,8 +76,8 @@ struct DeviceSeconds {
 
 class Device {
  public:
-  /// Copies the worlds [first, last), of one config, to the device with this number; each lies in one block of memory.
-  /// `complaint` says if that failed.
+  /// Copies the worlds [first, last), of one config, to the device with this number; each is in one block of memory.
+  /// `complaint` reports whether that failed.
   Device(const DeviceProgram& program, int32_t number, std::vector<World>& worlds, const std::vector<Memory>& memory,
          int first, int last);
   ~Device();
@@ -93,21 +93,22 @@ class Device {
   const DeviceProgram& program() const { return program_; }
   const DeviceSeconds& seconds() const { return seconds_; }
 
-  /// "", or what went wrong. Then the host's worlds stay as they were after the last run, without their networks.
+  /// "", or what went wrong. In that case the host's worlds stay as they were after the last run, without their
+  /// networks.
   const std::string& complaint() const { return complaint_; }
 
   bool holds(int index) const { return index >= first_ && index < last_; }
 
-  /// Begins to advance all worlds that are not over; they are all at the same step.
+  /// Starts to advance all worlds that are not over; all of them are at the same step.
   void start(int64_t steps);
 
-  /// Waits for that; then the host has all that is small.
+  /// Waits for that; afterwards the host has all small data.
   void finish();
 
   /// Brings a world's networks and rollouts to the host, unless they are there already.
   void fetch(int index);
 
-  /// Says that the host changes a world, networks and rollouts included: the next run copies all of it.
+  /// Marks a world as changed by the host, including networks and rollouts, so that the next run copies all of it.
   void change(int index) { changed_[at(index)] = true; }
 
  private:
@@ -116,7 +117,7 @@ class Device {
     head,       ///< the host may change it between any two runs
     small,      ///< read after each run
     death_log,  ///< the same, of which only the rows in use are copied
-    large       ///< networks and rollouts: copied when somebody wants them
+    large       ///< networks and rollouts: copied on request
   };
 
   /// A part of a world's memory.

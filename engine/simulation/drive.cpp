@@ -1,4 +1,4 @@
-/// What a caller adds to worlds: rules, what agents are told, and what they sense and earn.
+/// The caller's part in worlds: rules, actions, and the observations and rewards that it reads.
 #include <atomic>
 #include <cstring>
 #include <limits>
@@ -10,7 +10,7 @@
 namespace hedon {
 namespace {
 
-/// What an action may be.
+/// The range of an action.
 struct ActionBounds {
   float low, high;
 };
@@ -22,20 +22,20 @@ ActionBounds action_bounds(const SpeciesLayout& layout, ActionForm form) {
   return {-LARGEST, LARGEST};
 }
 
-/// The number whose sigmoid is the share of the way from `low` to `high` at which an action is.
+/// The logit of an action's position between `low` and `high`.
 float logit(float action, ActionBounds bounds) {
-  constexpr float END = 80.0f;  // from here on the sigmoid is 1 as float32; at -80 it is 2e-35, which no force feels
+  constexpr float END = 80.0f;  // from here on the sigmoid is 1 in float32; at -80 it is 2e-35, which no force reflects
   const double way = static_cast<double>(action) - static_cast<double>(bounds.low);
   const double rest = static_cast<double>(bounds.high) - static_cast<double>(action);
   if (way <= 0.0) return -END;
   return rest <= 0.0 ? END : static_cast<float>(log_double(way) - log_double(rest));
 }
 
-/// Slots that a thread takes at once.
+/// Slots that a thread takes at a time.
 constexpr int32_t SLOTS_AT_ONCE = 16;
 
-/// Writes what the agent in `slot` earned, and who is there now, into the row of the caller's arrays. Whether another
-/// agent, or none, is there than before.
+/// Writes the reward of the agent in `slot` and the id of the present one to the row of the caller's arrays. Returns
+/// whether the slot now has another agent, or none.
 bool read_reward(const World& world, int32_t slot, const ObservationOut& out, int64_t row) {
   int32_t& id = out.agent_id[row];
   const int32_t before = id;
@@ -44,7 +44,8 @@ bool read_reward(const World& world, int32_t slot, const ObservationOut& out, in
   return id != before;
 }
 
-/// Writes all that is known of the agent in `slot` into the row of the caller's arrays; the answer of `read_reward`.
+/// Writes the observation, reward and id for `slot` to the row of the caller's arrays; returns the result of
+/// `read_reward`.
 bool read_observation(World& world, int32_t slot, int rank, const ObservationOut& out, int64_t row) {
   const ObservationShape& shape = world.species(slot).network.observation;
   float* const observation = out.observation + row * shape.size();
@@ -62,8 +63,8 @@ bool read_observation(World& world, int32_t slot, int rank, const ObservationOut
   return changed;
 }
 
-/// Visits both actions of every living agent of a species: its world, where the action is in the state, and in an array
-/// (worlds, slots of the species, 2).
+/// Visits both actions of every living agent of a species: its world, and the index of the action in the state and in
+/// an array (worlds, slots of the species, 2).
 template <class Worlds, class Visit>
 void for_each_action(Worlds& worlds, const Species& own, Visit&& visit) {
   int64_t at = 0;

@@ -1,4 +1,4 @@
-/// Looks at the arrays of a checkpoint, which may come from anyone.
+/// Inspects the arrays of a checkpoint, whose source is not trusted.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 
 namespace hedon {
 
-/// Checks the numbers of a checkpoint. Reads arrays by name; keeps the first problem.
+/// Checks the numbers of a checkpoint. Reads arrays by name; stores the first problem.
 class Inspector {
  public:
   Inspector(const World& world, const Checkpoint& checkpoint) : world_(world), checkpoint_(checkpoint) {}
 
   std::string complaint;
 
-  /// Looks first behind what was found last: most arrays are asked for in their order.
+  /// Looks first after the array found last, since most arrays are requested in order.
   const SavedArray* find(const std::string& name) const {
     const size_t count = checkpoint_.size();
     for (size_t i = 0; i < count; ++i, ++next_) {
@@ -44,7 +44,7 @@ class Inspector {
     return false;
   }
 
-  /// Whether an array is there, with the right type and, unless -1, the lengths for this config.
+  /// Whether an array exists, with the right type and, except where they are -1, the lengths for this config.
   template <class T>
   bool has(const std::string& name, const std::vector<int64_t>& shape) {
     const SavedArray* array = find(name);
@@ -90,7 +90,7 @@ class Inspector {
   const World& world_;
 
  private:
-  /// Large arrays have millions of numbers, of which hardly ever one is bad: the first loop has no branch.
+  /// Large arrays have millions of numbers and almost never a bad one, so the first loop has no branch.
   template <class T, class Good>
   bool all_of(const std::string& name, double low, double high, Good&& good) {
     const SavedArray& array = *find(name);

@@ -34,8 +34,8 @@ void for_each_array(Struct& fields, const std::string& prefix, Visit&& visit) {
   });
 }
 
-/// Zeroed memory. Pages that are never touched use no memory. It asks for large pages: a step reads weights from the
-/// whole block of a world, and with small pages it would spend more time on address translation than on reading.
+/// Zeroed memory. Pages that are never touched use no memory. Large pages are requested, because a step reads weights
+/// from the whole block of a world, and with small pages address translation would take longer than reading.
 class Memory {
  public:
   static constexpr int64_t ALIGNMENT = 64;  ///< of each array: a cache line, and 16 floats
@@ -59,16 +59,16 @@ class Memory {
   char* data() const { return first_; }
   int64_t size() const { return size_; }
 
-  /// Keeps all from `first` on, a multiple of `SMALL_PAGE`, in a file of a folder instead. Nothing may have been
-  /// written there. Returns 0, or the system's number of what went wrong.
+  /// Keeps everything from `first` on, a multiple of `SMALL_PAGE`, in a file in a folder instead. Nothing may have been
+  /// written there yet. Returns 0, or the system's error number.
   int keep_in_file(int64_t first, const std::string& folder);
 
-  /// These bytes are soon read: fetches them, if the file has them.
+  /// Prefetches bytes that will soon be read, if they are in the file.
   void expect(const void* from, int64_t bytes) const {
     if (file_ >= 0 && from >= first_ + in_file_) expect_in_file(from, static_cast<size_t>(bytes));
   }
 
-  /// Pages of the file that hold nothing but these bytes are not read before they are written again.
+  /// Discards bytes, so that pages of the file with no others are not read before they are written again.
   void forget(const void* from, int64_t bytes);
 
  private:
@@ -83,11 +83,11 @@ class Memory {
   int64_t size_ = 0;
   void* block_ = nullptr;
   char* first_ = nullptr;
-  int64_t in_file_ = 0;  ///< where the part begins that a file holds
+  int64_t in_file_ = 0;  ///< start of the part that is in a file
   int64_t file_ = -1;    ///< -1: none
 };
 
-/// Bytes that an array takes, in whole cache lines.
+/// Size of an array, in whole cache lines [byte].
 template <class T>
 int64_t laid_out_bytes(const Array<T>& array) {
   // One spare line: vector loads may read, but never use, up to 15 floats past the end.
@@ -95,7 +95,7 @@ int64_t laid_out_bytes(const Array<T>& array) {
   return (bytes + Memory::ALIGNMENT - 1) / Memory::ALIGNMENT * Memory::ALIGNMENT;
 }
 
-/// Places arrays one after the other from `at` on, each rounded up to whole cache lines; counts bytes where it is null.
+/// Places arrays one after another from `at` on, each rounded up to whole cache lines; only counts bytes if it is null.
 struct Placer {
   char* at;
   int64_t bytes = 0;
@@ -107,7 +107,7 @@ struct Placer {
   }
 };
 
-/// Bytes that the arrays of `fields` take; places them from `at` on unless it is null.
+/// Size of the arrays of `fields` [byte]; places them from `at` on unless it is null.
 template <class Struct>
 int64_t lay_out(Struct& fields, char* at) {
   Placer placer{at};
@@ -130,7 +130,7 @@ int64_t lay_out_some(WorldState& state, char* at, IsSo&& is_so) {
   return place.bytes;
 }
 
-/// Numbers of bodies, circles, walls and pairs that the physics of a world must hold.
+/// Numbers of bodies, circles, walls and pairs that the physics of a world must have room for.
 PhysicsCapacity world_physics_capacity(const World& world);
 
 /// Sets the sizes of all arrays of a world, for teams of up to `members`.

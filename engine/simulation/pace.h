@@ -1,7 +1,7 @@
-/// Decides, for each stretch of steps, whether a team steps a world together or one member steps it alone.
+/// Decides, for each stretch of steps, whether a team steps a world together or leaves it to one member.
 ///
 /// The members of a team wait for one another several times per step. If other programs use the processors too, a
-/// member that has to wait for a processor delays the whole team, and one member alone is faster. Both ways give the
+/// member that has to wait for a processor delays the whole team, and a single member is faster. Both ways give the
 /// same bits, so the choice may depend on measured times: the faster way is used, and the other is tried from time to
 /// time.
 #pragma once
@@ -29,8 +29,8 @@ class Pace {
     return count_ % TRIAL == TRIAL - 1 ? !faster : faster;
   }
 
-  /// Notes how long a stretch took [s per step]. A disturbance makes a stretch longer, never shorter. So a shorter time
-  /// is accepted immediately, and a longer one gradually.
+  /// Records how long a stretch took [s per step]. A disturbance makes a stretch longer, never shorter. So a shorter
+  /// time is accepted immediately, and a longer one gradually.
   void note(bool together, double seconds) {
     double& known = together ? together_ : alone_;
     known = known == 0.0 || seconds < known ? seconds : known + WEIGHT * (seconds - known);
@@ -40,7 +40,7 @@ class Pace {
  private:
   static constexpr double SECONDS = 0.008;  ///< of a stretch
   static constexpr int64_t LONGEST = 32;    ///< steps of a stretch
-  static constexpr int64_t START = 4;       ///< first stretches, which try both ways in turn
+  static constexpr int64_t START = 4;       ///< number of first stretches, which alternate between both ways
   static constexpr int64_t TRIAL = 64;      ///< after those, every 64th stretch tries the other way: costs about 1 %
   static constexpr double WEIGHT = 0.25;    ///< weight of a longer time in the estimate
 
@@ -62,7 +62,7 @@ int64_t step_at_pace(Team& team, Pace& pace, int64_t count, StepOnce&& step_once
   }
   const int64_t stretch = pace.stretch();
   if (count > stretch) count = stretch;
-  // `note` changes the data that members decide by: the barriers below delay it until all members have decided.
+  // `note` changes the data for the decision; the barriers below delay it until all members have decided.
   const auto begun = std::chrono::steady_clock::now();
   const bool together = pace.together();
   if (together)

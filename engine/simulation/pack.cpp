@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint64_t MOST_DIMENSIONS = 2;
 
-/// Takes parts from the front of a string; false where it is too short.
+/// Takes parts from the front of a string; false if it is too short.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : left_(bytes) {}
@@ -21,7 +21,7 @@ class Reader {
     memcpy(&out, part.data(), sizeof out);
     return true;
   }
-  /// With what fills it up to eight bytes.
+  /// Includes the padding to eight bytes.
   bool padded(uint64_t bytes, std::string_view& out) {
     std::string_view rest;
     return take(bytes, out) && take((8 - bytes % 8) % 8, rest);

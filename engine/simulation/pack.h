@@ -1,5 +1,5 @@
-/// Worlds as one string of bytes: a mark, a hash of what follows, a text of the caller's, and the checkpoint of each
-/// world with its seed. All lengths and numbers take eight bytes, in the order of this processor.
+/// Worlds as one byte string: a mark, a hash of the rest, a text of the caller's, and the checkpoint and seed of each
+/// world. All lengths and numbers take eight bytes, in the byte order of this processor.
 #pragma once
 
 #include <string>
@@ -12,15 +12,15 @@ namespace hedon {
 
 inline constexpr char PACK_MARK[] = {'h', 'e', 'd', 'o', 'n', '-', 'w', '1'};
 
-/// What a string of bytes holds; views of it.
+/// The contents of a byte string, as views of it.
 struct Packed {
-  std::string complaint;  ///< "", or why it is no such string
+  std::string complaint;  ///< "", or why the string is invalid
   std::string_view head;
   std::vector<SavedWorld> worlds;
 };
 
-/// Reads a string of bytes, which may come from anyone. What the arrays hold, `Simulation::restore` checks.
-/// hashed   whether to look for damage by the hash, which takes as long as a copy
+/// Reads a byte string from an untrusted source. `Simulation::restore` checks the contents of the arrays.
+/// hashed   whether to check for damage with the hash, which takes as long as a copy
 Packed unpack(std::string_view bytes, bool hashed);
 
 }  // namespace hedon

@@ -1,5 +1,5 @@
-/// Restores a world from a checkpoint. A checkpoint may come from anyone: everything that a step relies on is checked
-/// before the world is changed.
+/// Restores a world from a checkpoint. The source of a checkpoint is not trusted, so everything that a step relies on
+/// is checked before the world is changed.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -25,13 +25,13 @@ bool rises(const std::vector<T>& values, bool strictly) {
   return true;
 }
 
-/// The species of each of the living, in their order.
+/// The species of each living agent, in their order.
 std::vector<int32_t> saved_species(const Inspector& in, size_t living) {
   if (in.world_.shape->species == 1) return std::vector<int32_t>(living, 0);
   return in.numbers<int32_t>("species");
 }
 
-/// Reads which of the living have networks, and which of them learn.
+/// Reads which living agents have networks, and which of them learn.
 bool read_networks(Inspector& in, SavedExtent& extent, const std::vector<int64_t>& births) {
   const WorldShape& shape = *in.world_.shape;
   if (shape.species > 1 && (!in.has<int32_t>("species", {static_cast<int64_t>(births.size())}) ||
@@ -53,7 +53,7 @@ bool read_networks(Inspector& in, SavedExtent& extent, const std::vector<int64_t
   return true;
 }
 
-/// Reads how many rows the arrays have. The slots are those that the world will give to the living.
+/// Reads how many rows the arrays have. Slots are numbered as the world will assign them to the living agents.
 bool read_extent(Inspector& in, SavedExtent& extent) {
   const WorldShape& shape = *in.world_.shape;
   if (!in.has<int64_t>("head.step", {1}) || !in.has<int32_t>("head.living_count", {1}) ||
@@ -82,7 +82,7 @@ bool read_extent(Inspector& in, SavedExtent& extent) {
   return in.within<int32_t>("head.births_in_window", 0, shape.newborns);
 }
 
-/// Checks that every array is there, that there are no others, and that all numbers are finite.
+/// Checks that all arrays are present, that there are no others, and that all numbers are finite.
 bool check_arrays(Inspector& in, const SavedExtent& extent, const Checkpoint& checkpoint) {
   size_t known = 1;
   bool good = true;
@@ -99,7 +99,7 @@ bool check_arrays(Inspector& in, const SavedExtent& extent, const Checkpoint& ch
   return good;
 }
 
-/// Checks that every species has room for its living and its newborns.
+/// Checks that every species has room for its living agents and its newborns.
 bool check_species(Inspector& in, size_t living) {
   const WorldShape& shape = *in.world_.shape;
   if (shape.hunting && !in.within<int32_t>("digestion", 0, 1'000'000)) return false;
@@ -189,7 +189,7 @@ bool check_food(Inspector& in, const SavedExtent& extent) {
          in.within<float>("food.y", 0, world.config->arena.height);
 }
 
-/// Checks the newborns that wait for their genomes: ids rise, and each parent among them is older than its child.
+/// Checks the newborns that wait for their genomes: ids ascend, and each parent among them is older than its child.
 bool check_newborns(Inspector& in) {
   if (in.world_.state.newborn.count == 0) return true;
   const std::vector<int32_t> ids = in.numbers<int32_t>("newborn.agent_id");
@@ -199,7 +199,7 @@ bool check_newborns(Inspector& in) {
     if (parents[i] < -1 || parents[i] >= static_cast<int32_t>(i))
       return in.refuse("newborn.parent is not an older newborn");
   }
-  // Every agent that was born in this window waits: a parent is looked for among them.
+  // Every agent born in this window waits, since parents are looked for among them.
   const int64_t step = in.numbers<int64_t>("head.step")[0];
   const std::vector<int64_t> births = in.numbers<int64_t>("life.birth_step");
   const std::vector<int32_t> living = in.numbers<int32_t>("life.agent_id");
@@ -210,7 +210,7 @@ bool check_newborns(Inspector& in) {
   return true;
 }
 
-/// Whether the last line of a wide observation can be.
+/// Whether the last line of a wide observation is possible.
 bool is_possible(const ObservationShape& sizes, const char* bytes) {
   ObservationExtra extra;
   memcpy(&extra, bytes, sizeof extra);
@@ -268,7 +268,7 @@ bool check_pairs(Inspector& in, const SavedExtent& extent) {
   return true;
 }
 
-/// Lists the pairs with impulses, bodies in the order of their ids: the next step builds its own list from this.
+/// Lists the pairs with impulses, with bodies in the order of their ids. The next step builds its own list from this.
 void restore_pairs(const Inspector& in, const World& world, const SavedExtent& extent) {
   const NeighborList& list = world.state.physics.neighbors;
   NeighborHead& head = list.head[0];
@@ -304,7 +304,7 @@ bool check_all(Inspector& in, SavedExtent& extent, const Checkpoint& checkpoint)
          check_observations(in, extent) && check_pairs(in, extent);
 }
 
-/// Reads who is in which slot: every slot once, and all of them of their species.
+/// Reads the slot of each agent, and checks that every slot occurs once and belongs to the right species.
 bool read_slots(Inspector& in, std::span<const char> saved, const SavedExtent& extent, std::vector<int32_t>& slots) {
   const WorldShape& shape = *in.world_.shape;
   const auto refuse = [&] { return in.refuse("the slots are not those of such a world"); };
@@ -327,7 +327,7 @@ bool read_slots(Inspector& in, std::span<const char> saved, const SavedExtent& e
   return true;
 }
 
-/// Fills an empty world; `slots` as `read_slots` gives them, or empty for any slots.
+/// Fills an empty world; `slots` come from `read_slots`, or are empty if any slots will do.
 void fill(const Inspector& in, World& target, SavedExtent& extent, const std::vector<int32_t>& slots = {}) {
   const WorldState& state = target.state;
   const std::vector<int32_t> species = saved_species(in, extent.slots.size());

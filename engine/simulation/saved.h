@@ -15,14 +15,14 @@ namespace hedon {
 /// Numbers of rows in the arrays of a checkpoint, and their slots.
 struct SavedExtent {
   std::vector<int32_t> slots;          ///< of the living, in the order of their ids
-  std::vector<int32_t> networks;       ///< those of them that act by networks
-  std::vector<int32_t> learners;       ///< those of them whose species learns
+  std::vector<int32_t> networks;       ///< living agents that act by networks
+  std::vector<int32_t> learners;       ///< living agents whose species learns
   std::vector<int32_t> free;           ///< free slots: see `free_slots`
-  std::vector<int32_t> free_networks;  ///< those of them whose species acts by networks
+  std::vector<int32_t> free_networks;  ///< free slots of species that act by networks
   std::vector<int32_t> foods;          ///< slots of the foods present, ascending
   int64_t newborns;                    ///< births of this window that wait for their genomes
   int64_t eaten_foods;                 ///< foods just eaten that are still seen
-  int64_t taught;                      ///< number of learners that were there when the window began; they come first
+  int64_t taught;                      ///< number of learners that were alive when the window began; they come first
   int64_t filled;                      ///< steps done in the window
 };
 
@@ -36,7 +36,7 @@ inline std::vector<int32_t> free_slots(const World& world) {
   return slots;
 }
 
-/// Those of a list of slots whose species is so.
+/// The slots of a list whose species meets a condition.
 inline std::vector<int32_t> slots_of(const World& world, bool Species::* is_so, const std::vector<int32_t>& slots) {
   std::vector<int32_t> found;
   for (const int32_t slot : slots) {
@@ -70,8 +70,8 @@ struct SavedRows {
   }
 };
 
-/// The rows of all arrays of a checkpoint except `food.slot` and the impulses, for visit(name, SavedRows). The list of
-/// fields of `WorldState` says which arrays there are; between two windows there are no rollouts.
+/// The rows of all arrays of a checkpoint except `food.slot` and the impulses, for visit(name, SavedRows). The field
+/// list of `WorldState` determines which arrays there are; between two windows there are no rollouts.
 template <class Visit>
 class SavedArrays {
  public:
@@ -95,7 +95,7 @@ class SavedArrays {
     const int64_t width = size.width == Extent::one ? 0 : hedon::extent(shape_, size.width, 1);
     if (size.lifetime == Lifetime::rollout) rollout(name, array, width);
     if (size.lifetime != Lifetime::saved) return;
-    // What depends on a rule that a world does not have is not there.
+    // Arrays for rules that the world does not have are omitted.
     if (array.count == 0 && size.rows != Extent::slots) return;
     if (is_by_slot(size.rows)) {
       by_slot(name, array, width, slots_with(size.rows));
@@ -128,7 +128,7 @@ class SavedArrays {
     } else {
       T::for_each_field([&](const char* field, auto member) {
         using Number = std::remove_cvref_t<decltype(first->*member)>;
-        if (std::is_same_v<T, WorldHead> && strncmp(field, "death_log", 9) == 0) return;  // what a reader has taken
+        if (std::is_same_v<T, WorldHead> && strncmp(field, "death_log", 9) == 0) return;  // it concerns only the reader
         visit_(name + "." + field, SavedRows<Number>{&(first->*member), sizeof(T), index, count, 0});
       });
     }
@@ -140,7 +140,7 @@ class SavedArrays {
     if (name == "resident_slot") by_slot("free." + name, array, width, extent_.free);
   }
 
-  /// With late inheritance the next newborns find in free slots what the dead have left.
+  /// With late inheritance, the next newborns use the networks and genomes that the dead have left in free slots.
   void free_slots() {
     if (shape_.networks) by_slot("free.params", state_.params, shape_.params, extent_.free_networks);
     by_slot("free.genome", state_.genome, shape_.genes, extent_.free);
@@ -164,7 +164,7 @@ class SavedArrays {
     if (extent_.filled == 0 || !shape_.learning) return;
     using Number = std::conditional_t<std::is_same_v<T, ObservationLine>, uint8_t, T>;
     const int64_t numbers = sizeof(T) / sizeof(Number);
-    // One observation more than steps; two actions per step.
+    // One more observation than steps; two actions per step.
     const int64_t per_step = width / shape_.rollout;
     visit_(name, SavedRows<Number>{reinterpret_cast<Number*>(array.data), width * static_cast<int64_t>(sizeof(T)),
                                    extent_.learners.data(), extent_.taught, extent_.filled * per_step * numbers});

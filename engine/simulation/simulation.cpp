@@ -12,7 +12,7 @@
 namespace hedon {
 namespace {
 
-/// Adds the time since the last lap to a part. It only reads the clock; nothing in a world depends on it.
+/// Adds the time since the last lap to a part. It only reads the clock, so nothing in a world depends on it.
 class Stopwatch {
  public:
   explicit Stopwatch(PartSeconds* seconds) : seconds_(seconds), last_(std::chrono::steady_clock::now()) {}
@@ -31,10 +31,10 @@ class Stopwatch {
 
 struct WorldBytes {
   int64_t all;
-  int64_t warm;  ///< those before the cold arrays
+  int64_t warm;  ///< arrays before the cold ones
 };
 
-/// Places all arrays of a world from `at` on, unless `at` is null: the cold ones last, on pages of their own.
+/// Places all arrays of a world from `at` on, unless `at` is null, with the cold ones last, on separate pages.
 WorldBytes lay_out_world(World& world, char* at) {
   int64_t bytes = 0;
   const auto next = [&] { return at == nullptr ? nullptr : at + bytes; };
@@ -47,7 +47,7 @@ WorldBytes lay_out_world(World& world, char* at) {
   return {bytes, warm};
 }
 
-/// Fetches what is cold of a world a little before it is read, if it is in a file.
+/// Prefetches the cold data of a world shortly before it is read, if it is in a file.
 struct Cold {
   const Memory& memory;
   const World& world;
@@ -57,7 +57,8 @@ struct Cold {
     const int64_t lines = seen.count / world.shape->capacity;
     memory.expect(&seen[slot * lines], lines * static_cast<int64_t>(sizeof(ObservationLine)));
   }
-  /// Of agents that have learned before this window. Their counts of updates tell, too, but others write these now.
+  /// For agents that have learned before this window. Their counts of updates show this too, but others write these
+  /// now.
   void moments(int32_t slot) const {
     const int64_t before = world.head().step - 2 * world.shape->steps;
     if (!world.species(slot).learns || world.state.life[slot].birth_step > before) return;
@@ -108,7 +109,7 @@ Simulation::Simulation(const Config& config, std::vector<Segment> walls, int32_t
   }
   learn_stride_ = learn_stride(shape_, config_);
   learn_scratch_ = Memory(learn_stride_ * static_cast<int64_t>(sizeof(float)) * threads);
-  pool_ = std::make_unique<Pool>(threads, flush_);  // last, since threads that begin take memory too
+  pool_ = std::make_unique<Pool>(threads, flush_);  // last, since starting threads takes memory too
   if (program == nullptr || !pool_->whole() || scratch_error_ != 0) return;
   const int worlds = world_count(), devices = std::min(program->count(), worlds);
   for (int d = 0; d < devices; ++d)
@@ -193,7 +194,7 @@ void Simulation::empty(World& world) {
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, PhysicsState>) {
       for_each_array(field, "", clear);
     } else if (!Device::is_large(size) && size.rows != Extent::learner_slots) {
-      // What is left: who takes a slot gets networks, rollouts and an optimizer of its own.
+      // The rest may stay: an agent that takes a slot gets new networks, rollouts and a new optimizer.
       clear(name, field);
     }
   });

@@ -1,4 +1,4 @@
-/// Many worlds under one config: memory, threads, and advancing them together.
+/// Many worlds with one config: their memory and threads, and how they advance together.
 #pragma once
 
 #include <array>
@@ -31,22 +31,22 @@ struct SceneInput {
 
 /// The caller's arrays for the agents of one species: (worlds, slots of the species, …) each.
 struct ObservationOut {
-  float* observation;  ///< (…, entries); zeros where nobody lives; null for `read_rewards`
-  float* reward;       ///< of the last step, for the agent whose id was there before it; else 0
-  int32_t* agent_id;   ///< -1 where nobody lives; holds the ids of before the step on entry
+  float* observation;  ///< (…, entries); zeros for empty slots; null for `read_rewards`
+  float* reward;       ///< in the last step, of the agent with the id from before it; else 0
+  int32_t* agent_id;   ///< -1 for empty slots; on entry, the ids from before the step
 };
 
-/// What the numbers are by which a caller tells agents what to do.
+/// The meaning of the numbers in a caller's actions.
 enum class ActionForm : int32_t {
   unit,   ///< from -1, the least force of a motor, to 1, the greatest
   force,  ///< the force itself
-  logit   ///< before the sigmoid, as a network gives them: any finite number
+  logit   ///< before the sigmoid, like the output of a network: any finite number
 };
 
 /// Bytes that a simulation reserves, by purpose. Memory that is never touched costs nothing.
 struct MemoryNeed {
   int64_t networks;
-  int64_t cold;      ///< moments of the optimizers, and observations: what may lie in files
+  int64_t cold;      ///< moments of the optimizers, and observations, which may be in files
   int64_t rollouts;  ///< without the observations
   int64_t physics;
   int64_t rest;
@@ -65,23 +65,23 @@ class Simulation {
  public:
   /// walls   outer polygon first, clockwise, then inner walls
   /// slot_order  the order in which slots are first handed out, empty for 0, 1, 2, …; it changes no result
-  /// flush   whether denormals are flushed to zero; it changes no result
-  /// program  of the devices that advance the worlds, which are dealt out to them; null for the threads
-  /// scratch  folder for the files of what is cold; empty to keep it in memory. It changes no result.
-  /// The arguments must have passed `check_config` and `check_arguments`. It can do nothing unless `pool().whole()` and
-  /// `scratch_error()` is 0.
+  /// flush   whether denormals are flushed to zero; does not change results
+  /// program  of the devices that advance the worlds, which are divided among them; null to use threads
+  /// scratch  folder for files with cold data; empty to keep it in memory; does not change results
+  /// The arguments must have passed `check_config` and `check_arguments`. Use the simulation only if `pool().whole()`
+  /// is true and `scratch_error()` is 0.
   Simulation(const Config& config, std::vector<Segment> walls, int32_t outer_walls, const std::vector<uint64_t>& seeds,
              int threads, const Kernel* kernel, const std::vector<int32_t>& slot_order, bool flush = true,
              const DeviceProgram* program = nullptr, const std::string& scratch = "");
 
-  /// Bytes that a simulation reserves: compare them with the machine's memory before you make it.
+  /// Bytes that a simulation would reserve. Compare them with the machine's memory before you make one.
   static MemoryNeed bytes_needed(const Config& config, int32_t walls, int64_t worlds, int threads);
 
-  /// Empties a world and puts these agents and foods into it, at any places: for tests of chosen scenes.
-  /// False if there are more than the world can hold.
+  /// Empties a world and puts these agents and foods into it, at any places, for tests of chosen scenes.
+  /// Returns false if there are more than the world can hold.
   bool set_scene(int index, const SceneInput& scene);
 
-  /// Everything that decides a world's future, as arrays. Deaths that the reader has not yet taken are not included.
+  /// Everything that determines a world's future, as arrays. Deaths that the reader has not yet taken are not included.
   Checkpoint save(int index);
   void save(int index, const CheckpointSink& sink);
 
@@ -89,75 +89,75 @@ class Simulation {
   /// checkpoint; then the world is unchanged.
   std::string restore(int index, const Checkpoint& checkpoint);
 
-  /// Replaces all worlds by saved ones, and their seeds; none of them if one of the checkpoints is wrong.
+  /// Replaces all worlds and their seeds by saved ones, or none of them if one of the checkpoints is invalid.
   std::string restore(const std::vector<SavedWorld>& saved);
 
-  /// Writes all worlds as one string of bytes with a text of the caller's, unless `out` is null; returns its length.
+  /// Writes all worlds as one byte string with a text of the caller's, unless `out` is null; returns its length.
   size_t pack(std::string_view head, char* out);
 
   /// Begins a world again with this seed.
   void reset(int index, uint64_t seed);
 
-  /// A hash of everything that decides a world's future: equal for equal bits.
+  /// A hash of everything that determines a world's future: equal for equal bits.
   uint64_t digest(int index);
 
   /// Advances every world that is not over by `steps` steps. The results do not depend on threads.
   void run(int64_t steps);
 
-  /// Gives a species a rule; must be there before a step if its config asks for one.
+  /// Gives a species a rule; required before a step if the config asks for one.
   void set_rule(int32_t species, RuleUse use, Rule rule);
 
-  /// "", or which rule the config names and is not there.
+  /// "", or the rule that the config requires but that is missing.
   std::string missing_rule() const;
 
-  /// Which number of a living agent cannot be its action: its place in (worlds, slots of the species, 2), or -1.
+  /// The index in (worlds, slots of the species, 2) of an invalid action of a living agent, or -1.
   int64_t wrong_action(int32_t species, const float* actions, ActionForm form) const;
 
-  /// Tells the agents of an external species what to do from now on: (worlds, slots of the species, 2). Rows without an
-  /// agent are not read. Returns -1, or which number of an agent is out of bounds; then nobody is told anything.
+  /// Sets the actions of the agents of an external species from now on: (worlds, slots of the species, 2). Rows without
+  /// an agent are not read. Returns -1, or the index of an action out of bounds; then no action is set.
   int64_t set_actions(int32_t species, const float* actions, ActionForm form);
 
-  /// Writes what the agents of an external species sense now, and what they earned in the last step. Returns in how
-  /// many slots another agent, or none, is now.
+  /// Writes what the agents of an external species sense now, and their rewards in the last step. Returns the number of
+  /// slots that now have another agent, or none.
   int64_t read_observations(int32_t species, const ObservationOut& out);
 
-  /// The same without what they sense.
+  /// The same without observations.
   void read_rewards(int32_t species, const ObservationOut& out);
 
-  /// Writes what the agents of a species have eaten since the worlds began: (worlds, meals).
+  /// Writes the numbers of meals of a species since the worlds began: (worlds, meals).
   void count_meals(int32_t species, int64_t* out) const;
 
   int world_count() const { return static_cast<int>(worlds_.size()); }
-  /// A world, of which the caller may change everything.
+  /// A world that the caller may change in every way.
   World& world(int index) {
     complete(index);
     if (Device* device = device_of(index)) device->change(index);
     return numbers(index);
   }
-  /// A world, of which the caller reads everything.
+  /// A world that the caller may read completely.
   const World& complete(int index) {
     if (Device* device = device_of(index)) device->fetch(index);
     return numbers(index);
   }
-  /// A world, of which the caller reads anything but networks and rollouts, which may be the device's, and changes
-  /// nothing but the head.
+  /// A world of which the caller changes only the head, and does not read networks and rollouts, which may be only on
+  /// the device.
   World& numbers(int index) { return worlds_[static_cast<size_t>(index)]; }
   /// What went wrong on a device; "" if nothing did.
   std::string device_complaint() const;
-  /// Of all devices together; they work at the same time.
+  /// Summed over all devices, which work at the same time.
   DeviceSeconds device_seconds() const;
   int device_count() const { return static_cast<int>(devices_.size()); }
   const WorldShape& shape() const { return shape_; }
   const Config& config() const { return config_; }
   bool flush() const { return flush_; }
-  /// 0, or the system's number of why there are no files in `scratch`.
+  /// 0, or the system's error number if the files in `scratch` could not be made.
   int scratch_error() const { return scratch_error_; }
-  /// What advances the worlds: the name of an instruction set or of a device.
+  /// The name of the instruction set or of the device that advances the worlds.
   const char* kernel_name() const { return devices_.empty() ? kernel_->name : devices_[0]->program().name; }
   const Pool& pool() const { return *pool_; }
   Pool& pool() { return *pool_; }
   const PartSeconds& seconds(int index) const { return seconds_[static_cast<size_t>(index)]; }
-  /// The block that holds all of a world, `bytes_per_world` long: who puts a copy of it back has the world as it was.
+  /// The block that contains a whole world, `bytes_per_world` long. Putting a copy of it back restores the world.
   char* memory(int index) { return memory_[static_cast<size_t>(index)].data(); }
   int64_t bytes_per_world() const { return memory_.empty() ? 0 : memory_.front().size(); }
 
@@ -181,7 +181,7 @@ class Simulation {
   Memory learn_scratch_;
   int64_t learn_stride_;
   std::unique_ptr<Pool> pool_;
-  std::vector<std::unique_ptr<Device>> devices_;  ///< each has a range of the worlds; none if the threads have them
+  std::vector<std::unique_ptr<Device>> devices_;  ///< each has a range of the worlds; empty if threads advance them
 };
 
 }  // namespace hedon

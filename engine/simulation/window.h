@@ -42,7 +42,7 @@ HEDON_FN RandomStream minibatch_stream(const World& world, int32_t slot) {
           static_cast<uint32_t>(world.head().step)};
 }
 
-/// What follows the learning of the first `taught` of the living: counts, genomes that wait, the next window.
+/// Completes a window after the first `taught` living agents have learned: counts, waiting genomes, the next window.
 HEDON_FN void close_window(World& world, int32_t taught) {
   for (int32_t i = 0; i < taught; ++i) {
     const int32_t slot = world.state.living[i];
@@ -54,7 +54,7 @@ HEDON_FN void close_window(World& world, int32_t taught) {
 
 /// Every agent that lived through the whole window learns from its rollout, if its species learns; all others wait for
 /// the next window.
-/// `scratch` holds `stride` floats for each member of the group. ahead(slot) is called a little before the agent in
+/// `scratch` holds `stride` floats for each member of the group. ahead(slot) is called shortly before the agent in
 /// `slot` learns.
 template <class Group, class Ahead>
 HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t stride, Ahead&& ahead) {
@@ -79,7 +79,8 @@ HEDON_FN void learn_window(Group& group, World& world, float* scratch, int64_t s
 /// Advances a world by `steps` steps, with learning at the end of each window; stops early if the world is over.
 /// `pacer(group, count, step_once)` calls `step_once(members)` up to `count` times, with the whole group or a part of
 /// it.
-/// `cold` has `rollout(slot)` and `moments(slot)`, which are called a little before those of an agent are read.
+/// `cold` has `rollout(slot)` and `moments(slot)`, which are called shortly before an agent's rollout and moments are
+/// read.
 template <class Group, class Pacer, class Lap, class Cold>
 HEDON_FN void advance(Group& group, World& world, int64_t steps, float* scratch, int64_t stride, Pacer&& pacer,
                       Lap&& lap, const Cold& cold) {
