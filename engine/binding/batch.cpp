@@ -14,7 +14,7 @@
 namespace hedon {
 namespace {
 
-/// The seed in the row of a world; the upper bit is left out, which the records of a run cannot have.
+/// The seed in the row of a world, without the upper bit, which the records of a run cannot store.
 uint64_t seed_in(const BatchIn& in, int64_t row) {
   return uint64_t{in.key[2 * row] & 0x7fffffffu} << 32 | in.key[2 * row + 1];
 }
@@ -26,7 +26,7 @@ std::string number(const char* name, int64_t world, int64_t slot, int64_t motor,
   return text;
 }
 
-/// One agent-step after the other, with the rewards of those who were there at the beginning.
+/// Runs the steps one after another, with rewards for the agents that were alive at the beginning.
 void advance_worlds(PythonSimulation& held, Simulation& simulation, const BatchCall& call, const BatchIn& in,
                     const BatchOut& out, size_t agents) {
   const int32_t species = static_cast<int32_t>(call.species);
@@ -116,8 +116,8 @@ std::string PythonSimulation::step_batch(const BatchCall& call, const BatchIn& i
   return "";
 }
 
-/// One row for all worlds: they begin by one seed. Steps may then have a row for each of them that is of world 0, as of
-/// many networks that a program maps over a single world.
+/// With one row for all worlds, they begin with the same seed. The rows of later steps may then all name world 0, for
+/// example if a program maps many networks over a single world.
 std::string PythonSimulation::begin_alike(const BatchCall& call, const BatchIn& in, const BatchOut& out) {
   const size_t worlds = static_cast<size_t>(simulation_->world_count());
   const size_t slots = static_cast<size_t>(call.slots), numbers = slots * static_cast<size_t>(call.entries);

@@ -27,10 +27,10 @@ NumberKind kind_of(const nb::dlpack::dtype& type, const std::string& name) {
   throw nb::value_error((name + " does not hold plain numbers").c_str());
 }
 
-/// A checkpoint of numbers where the caller has them.
+/// A checkpoint whose numbers stay in the caller's memory.
 struct GivenArrays {
   Checkpoint checkpoint;
-  std::vector<AnyArray> held;  ///< what keeps them there
+  std::vector<AnyArray> held;  ///< keeps the memory alive
 };
 
 /// ValueError: something is not an array of plain numbers.
@@ -68,7 +68,7 @@ nb::dict to_arrays(Checkpoint checkpoint) {
 void save_to(PythonSimulation& self, int world, const nb::callable& begin, const nb::callable& piece) {
   self.slotted(world);
   self.need_whole(world);
-  std::exception_ptr raised;  // the engine is built without exceptions: none may pass through it
+  std::exception_ptr raised;  // the engine is built without exceptions, so none may pass through it
   const auto guarded = [&](auto&& call) {
     try {
       call();

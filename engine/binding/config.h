@@ -1,4 +1,4 @@
-/// Fills the engine's config structs from nested Python dicts and sequences, with the same code for all of them.
+/// Fills the engine's config structs from nested Python dicts and sequences, with the same code for all structs.
 ///
 /// A missing name, an extra name or a value of the wrong type is an error that gives the path.
 #pragma once
@@ -64,7 +64,7 @@ void fill(nanobind::handle value, T& out, const std::string& path) {
   }
 }
 
-/// The inverse of `fill`: for a test that every setting arrives.
+/// The inverse of `fill`, for a test that every setting arrives.
 template <class T>
 nanobind::object unfill(const T& value) {
   namespace nb = nanobind;

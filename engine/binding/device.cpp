@@ -9,7 +9,7 @@
 namespace hedon {
 namespace {
 
-/// Refuses what only the host can do, and networks that a device cannot update.
+/// Refuses configs that only the host supports, and networks that a device cannot update.
 void need_fit(const DeviceProgram& program, const Config& config) {
   const WorldShape shape = make_shape(config, 0, 0);
   for (int32_t s = 0; s < shape.species; ++s) {

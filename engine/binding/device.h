@@ -1,4 +1,4 @@
-/// Loads the library of a device: `hedon_device` of a file.
+/// Loads the library of a device, through the function `hedon_device` of a file.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace hedon {
 
-/// The program of the library in a file; it stays loaded. EngineError, in one sentence: the file cannot be loaded, is
-/// of other sources, or there is no device.
+/// The program of the library in a file; it stays loaded. EngineError, in one sentence: the file cannot be loaded, was
+/// built from other sources, or there is no device.
 const DeviceProgram* open_device(const std::string& file);
 
 /// The program of the library in a file, ready for worlds of a config; it stays loaded. EngineError, in one sentence:
-/// the file cannot be loaded, is of other sources, has no device, or the config asks for what a device does not do.
+/// the file cannot be loaded, was built from other sources, finds no device, or a device does not support the config.
 const DeviceProgram* need_device(const std::string& file, const Config& config);
 
 }  // namespace hedon

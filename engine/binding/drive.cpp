@@ -9,7 +9,7 @@ namespace nb = nanobind;
 namespace hedon {
 namespace {
 
-/// Refuses an array of the caller that has not one row for each slot of a species in each world.
+/// Refuses an array of the caller that does not have one row for each slot of a species in each world.
 template <class Table>
 void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
   const WorldShape& shape = self.get().shape();
@@ -21,7 +21,7 @@ void need_rows(PythonSimulation& self, int32_t species, const Table& table) {
     throw nb::value_error("arrays must have a row for each slot of the species in each world");
 }
 
-/// The form of actions, if they are an array of the species. ValueError: they are not, or no form is called so.
+/// The form of actions, if they are an array of the species. ValueError: they are not, or there is no such form.
 ActionForm form_of(PythonSimulation& self, int32_t species, const TableIn& actions, const std::string& form) {
   need_rows(self, species, actions);
   if (actions.shape(2) != ACTIONS) throw nb::value_error("each agent has two actions");

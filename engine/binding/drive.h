@@ -1,4 +1,4 @@
-/// What a caller that drives agents tells the engine and reads from it, in NumPy arrays of its own.
+/// Actions, observations and rewards for a caller that drives agents, in the caller's NumPy arrays.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -18,22 +18,22 @@ using IdsOut = nanobind::ndarray<int32_t, nanobind::ndim<2>, nanobind::c_contig,
 /// Names of the forms of actions, in the order of `ActionForm`.
 inline constexpr const char* ACTION_FORMS[] = {"unit", "force", "logit"};
 
-/// Which number of a living agent cannot be its action, or -1. ValueError: an array has another shape.
+/// The index of an invalid action of a living agent, or -1. ValueError: an array has another shape.
 int64_t wrong_action(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form);
 
-/// Tells the agents of an external species what to do: (worlds, slots, 2). Returns -1, or which number of an agent is
-/// out of bounds. ValueError: an array has another shape.
+/// Sets the actions of the agents of an external species: (worlds, slots, 2). Returns -1, or the index of an action out
+/// of bounds. ValueError: an array has another shape.
 int64_t set_actions(PythonSimulation& self, int32_t species, TableIn actions, const std::string& form);
 
-/// Writes what they sense, what they earned in the last step, and their ids: (worlds, slots, …). Returns in how many
-/// slots another agent, or none, is now.
+/// Writes their observations, their rewards in the last step, and their ids: (worlds, slots, …). Returns the number of
+/// slots that now have another agent, or none.
 int64_t read_observations(PythonSimulation& self, int32_t species, TableOut observation, RowsOut reward,
                           IdsOut agent_id);
 
-/// The same without what they sense.
+/// The same without observations.
 void read_rewards(PythonSimulation& self, int32_t species, RowsOut reward, IdsOut agent_id);
 
-/// What the agents of a species have eaten since the worlds began: (worlds, meals).
+/// The numbers of meals of a species since the worlds began: (worlds, meals).
 nanobind::object meals_of(PythonSimulation& self, int32_t species);
 
 }  // namespace hedon

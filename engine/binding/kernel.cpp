@@ -65,7 +65,7 @@ nb::tuple cast_rays(const std::string& kernel_name, Columns circles, Types circl
                               static_cast<int32_t>(segments.shape(0)),
                               static_cast<int32_t>(segments.shape(0)),
                               static_cast<float>(wall_type)};
-  // For an fan at the origin with heading x, the directions of rays are their cosines and sines. Arcs have no edges.
+  // For a fan at the origin with heading x, the directions of rays are their cosines and sines. Arcs have no edges.
   const Aligned<float> next(HIDDEN * HIDDEN);
   const RayFan fan = {0.0f,  0.0f,   1.0f, 0.0f, cosine.get(), sine.get(), static_cast<int32_t>(rays),
                       start, length, -1,   1.0f, 0.0f,         {},         {next.get(), HIDDEN}};

@@ -1,4 +1,4 @@
-/// Memory and checks that the bindings of the engine's parts share.
+/// Memory and checks shared by the bindings of the engine's parts.
 #pragma once
 
 #include <nanobind/nanobind.h>

@@ -1,4 +1,4 @@
-/// The Python module `hedon._engine`. Each part of the engine adds its own functions, so that tests can call the parts.
+/// The Python module `hedon._engine`. Each part of the engine adds its functions, so that tests can call them directly.
 #include <nanobind/nanobind.h>
 
 #include <stdexcept>
@@ -18,7 +18,7 @@ void translate(const std::exception_ptr& pointer, void*) {
   }
 }
 
-/// ImportError in an interpreter beside the main one: there, nanobind would wait for ever for a lock that it holds
+/// Raises ImportError in any interpreter but the main one, where nanobind would wait forever for a lock that it holds
 /// itself.
 void need_main_interpreter() {
   if (PyInterpreterState_Get() == PyInterpreterState_Main()) return;

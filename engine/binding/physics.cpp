@@ -27,7 +27,7 @@ namespace nb = nanobind;
 namespace hedon {
 namespace {
 
-/// One contact that was reported to the visitor.
+/// One contact reported to the visitor.
 struct ContactRow {
   int32_t kind, body, other;
   float direction_x, direction_y, angle;
@@ -169,7 +169,7 @@ class Scene {
     return out;
   }
 
-  /// Slots of bodies or circles whose cells lie within reach of a point.
+  /// Slots of bodies or circles whose cells are within reach of a point.
   std::vector<int32_t> near(const std::string& kind, float x, float y, float reach) const {
     std::vector<int32_t> out;
     const auto add = [&](int32_t item) { out.push_back(item); };

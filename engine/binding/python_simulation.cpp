@@ -65,7 +65,7 @@ std::vector<Segment> to_segments(const WallsIn& walls) {
   return segments;
 }
 
-/// The simulations of this process by their ids. Those that a thread uses without Python stay while it does.
+/// The simulations of this process by id. One that a thread uses without Python is not destroyed meanwhile.
 struct Registry {
   std::mutex mutex;
   std::map<int64_t, PythonSimulation*> held;
@@ -120,7 +120,7 @@ PythonSimulation::PythonSimulation(nb::dict config, WallsIn walls, int64_t outer
   Registry& all = registry();
   const std::lock_guard lock(all.mutex);
   id_ = ++all.last;
-  turn_ = static_cast<uint32_t>(static_cast<uint64_t>(id_) * 0x9E3779B9u);  // far from those of others
+  turn_ = static_cast<uint32_t>(static_cast<uint64_t>(id_) * 0x9E3779B9u);  // far from the turns of other simulations
   all.held[id_] = this;
 }
 
@@ -130,7 +130,7 @@ PythonSimulation::~PythonSimulation() {
     const std::lock_guard lock(all.mutex);
     all.held.erase(id_);
   }
-  while (running_.load()) std::this_thread::yield();  // a thread without Python is at work; no other can come
+  while (running_.load()) std::this_thread::yield();  // a thread without Python is still at work; no other can start
 }
 
 std::string PythonSimulation::with(int64_t id, const std::function<std::string(PythonSimulation&)>& use) {
@@ -190,7 +190,7 @@ void PythonSimulation::run(int64_t steps) {
   if (running_.exchange(true)) throw EngineError("busy: the simulation is running in another thread");
   const Running mark{running_};
   while (steps > 0) {
-    // A device is not disturbed within a window.
+    // A device is not interrupted within a window.
     const int64_t count = std::min(simulation.device_count() > 0 ? simulation.shape().steps : piece_, steps);
     const Clock::time_point begun = Clock::now();
     {
@@ -202,7 +202,8 @@ void PythonSimulation::run(int64_t steps) {
     need_working();
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
-    // Approach the full time by at most a factor of four: the time of a piece with learning says little about the next.
+    // Approach the full time by at most a factor of four, since the time of a piece with learning hardly predicts the
+    // next.
     const double next = static_cast<double>(count) * PIECE_SECONDS / std::max(seconds, 1e-9);
     if (count == piece_) piece_ = static_cast<int64_t>(std::clamp(next, 1.0, 4.0 * static_cast<double>(piece_)));
   }
@@ -234,7 +235,7 @@ void PythonSimulation::set_rule(NamedRule named, Rule rule) {
   rules_.push_back(std::move(named));
 }
 
-/// The agents of a fault, or the agent and the rule that is at fault.
+/// The agents of a fault, or the agent and the rule that caused it.
 std::string PythonSimulation::about_agents(const Fault& fault) const {
   std::string text = fault.agent_id >= 0 ? ", agent " + std::to_string(fault.agent_id) : "";
   const bool ruled = fault.status == Status::rule_not_finite || fault.status == Status::rule_no_chance ||
@@ -251,7 +252,7 @@ static std::string shown(double value) {
   return text;
 }
 
-/// The only place that turns a world's status into an exception. The earliest error counts, for any number of steps.
+/// The only place that turns a world's status into an exception: the earliest error, whatever the number of steps.
 int PythonSimulation::faulty() const {
   Simulation& simulation = *simulation_;
   int first = -1;

@@ -1,4 +1,4 @@
-/// A simulation for Python. All calls go through it; a call that is not possible is refused with a message.
+/// A simulation for Python. All calls go through it, and invalid calls are refused with a message.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -21,7 +21,7 @@ namespace hedon {
 
 using WallsIn = nanobind::ndarray<const float, nanobind::shape<-1, 4>, nanobind::c_contig, nanobind::device::cpu>;
 
-/// A rule of a species, and what messages call it.
+/// A rule of a species, with its name for messages.
 struct NamedRule {
   int32_t species;
   RuleUse use;
@@ -30,9 +30,9 @@ struct NamedRule {
 
 class PythonSimulation {
  public:
-  /// Arguments as `Simulation` has them; 0 threads for all processors, "" for the best kernel.
+  /// The arguments are as for `Simulation`; 0 threads for all processors, "" for the best kernel.
   /// device   file of the library of a device that advances the worlds; "" for the threads
-  /// scratch   folder for the files of what is cold; "" to keep it in memory
+  /// scratch   folder for files with cold data; "" to keep it in memory
   /// EngineError: a number is out of bounds, the kernel is unknown, there is too little memory, or there is no place
   /// for the initial agents or foods; or the device cannot be used.
   PythonSimulation(nanobind::dict config, WallsIn walls, int64_t outer_walls, const std::vector<uint64_t>& seeds,
@@ -43,21 +43,21 @@ class PythonSimulation {
   PythonSimulation(const PythonSimulation&) = delete;
   PythonSimulation& operator=(const PythonSimulation&) = delete;
 
-  /// A number that no other simulation of this process has or had.
+  /// A number that no other simulation of this process has, or has had.
   int64_t id() const { return id_; }
 
-  /// Calls use(simulation) for the one with this id, from any thread, without Python; it cannot go away meanwhile.
-  /// Returns what `use` returns, or why it could not be called.
+  /// Calls use(simulation) for the simulation with this id, from any thread, without Python; it is not destroyed
+  /// meanwhile. Returns the result of `use`, or why it could not be called.
   static std::string with(int64_t id, const std::function<std::string(PythonSimulation&)>& use);
 
-  /// Of the state that `step_batch` goes on from; a copy of an environment takes over that of the original.
+  /// The turn of the state from which `step_batch` continues; a copy of an environment takes it over from the original.
   uint32_t turn() const { return turn_; }
   void set_turn(uint32_t turn) { turn_ = turn; }
 
   /// See `hedon::step_batch`.
   std::string step_batch(const BatchCall& call, const BatchIn& in, const BatchOut& out, int64_t rows);
 
-  /// Calls the `Watch` of a call, if it has one. EngineError: what it complains of.
+  /// Calls the `Watch` of a call, if it has one. EngineError: its complaint.
   void tell(const BatchCall& call, Watched watched, const bool* begins = nullptr, const uint64_t* seeds = nullptr);
 
   static int count_threads(int threads) { return threads > 0 ? threads : available_processors(); }
@@ -65,8 +65,8 @@ class PythonSimulation {
   /// EngineError: it runs in another thread, or this process was forked from the one that made it.
   Simulation& get();
 
-  /// The same, and IndexError: there is no such world. Of worlds on a device, networks and rollouts may be older: see
-  /// `Simulation::numbers`.
+  /// The same, and IndexError: there is no such world. For worlds on a device, networks and rollouts may be outdated:
+  /// see `Simulation::numbers`.
   World& world(int index);
 
   /// Brings a world's networks and rollouts to the host. EngineError: the device that had them has failed.
@@ -75,26 +75,26 @@ class PythonSimulation {
   /// A world with consistent slots. EngineError: it stopped because its slots are inconsistent.
   World& slotted(int index);
 
-  /// Replaces all worlds by those of a string of `Simulation::pack`. Returns "", or why none was replaced.
+  /// Replaces all worlds by the ones in a string from `Simulation::pack`. Returns "", or why none was replaced.
   std::string unpack(std::string_view bytes);
 
-  /// `Simulation::set_rule`; faults of the rule tell its name.
+  /// `Simulation::set_rule`; the messages of the rule's faults contain its name.
   void set_rule(NamedRule named, Rule rule);
 
   /// Begins a world again with this seed. EngineError: there is no place for its initial agents or foods.
   void reset(int index, uint64_t seed);
 
-  /// `Simulation::read_observations`, or `read_rewards` if there is no array of observations, which counts nothing,
-  /// with the interpreter lock released.
+  /// `Simulation::read_observations`, or `read_rewards`, which counts nothing, if there is no array of observations.
+  /// The interpreter lock is released.
   int64_t read_observations(int32_t species, const ObservationOut& out);
 
   /// Advances all worlds. After each piece, a fraction of a second long, Python handles signals, so that Ctrl-C raises
   /// KeyboardInterrupt. The worlds are then in a valid state, after fewer steps.
-  /// EngineError: also what a world reports.
+  /// EngineError: also for the fault of a world.
   void run(int64_t steps);
 
  private:
-  int faulty() const;  ///< the world with the first fault; -1 where there is none
+  int faulty() const;  ///< the world with the first fault; -1 if there is none
   void raise_faults();
   std::string about_agents(const Fault& fault) const;
   std::string begin_alike(const BatchCall& call, const BatchIn& in, const BatchOut& out);
@@ -102,11 +102,12 @@ class PythonSimulation {
 
   std::unique_ptr<Simulation> simulation_;
   std::atomic<bool> running_{false};
-  std::atomic<std::thread::id> watcher_{};  ///< the thread in which a `Watch` reads, while everybody else waits
+  std::atomic<std::thread::id> watcher_{};  ///< the thread in which a `Watch` reads, while all others wait
   int64_t id_ = 0;
   std::vector<NamedRule> rules_;
-  uint32_t turn_;  ///< counts calls of `step_batch`, from a number of its own, so that no other's states are taken
-  std::optional<uint32_t> alike_;  ///< the turn at which all worlds have begun by one seed
+  uint32_t
+      turn_;  ///< counts calls of `step_batch` from a start of its own, so that states of other simulations are refused
+  std::optional<uint32_t> alike_;  ///< the turn at which all worlds began with one seed
   int64_t piece_ = 1;              ///< steps between two checks for Ctrl-C
 };
 

@@ -6,9 +6,9 @@
 namespace hedon {
 
 /// Releases the lock of the interpreter, and takes it again at the end of its scope. If the interpreter has ended by
-/// then, as it can for a daemon thread, the thread stops there for good: it may never enter the interpreter again.
-/// (nanobind's own guard would end the whole process: Python ends such a thread by unwinding it.) What it works on then
-/// stays, and nanobind is told not to complain of that.
+/// then, as can happen to a daemon thread, the thread stops there for good, since it may never enter the interpreter
+/// again. (nanobind's own guard would end the whole process, because Python ends such a thread by unwinding it.) The
+/// objects in use are then leaked, and nanobind's warning about them is disabled.
 class Released {
  public:
   Released();

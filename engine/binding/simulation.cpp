@@ -1,4 +1,4 @@
-/// `_engine.Simulation`: many worlds, advanced with the interpreter lock released, and read as NumPy arrays.
+/// `_engine.Simulation`: many worlds, advanced with the interpreter lock released and read as NumPy arrays.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -65,7 +65,7 @@ nb::dict to_dict(const Struct& values) {
   return out;
 }
 
-/// The deaths that wait, the oldest first.
+/// The waiting deaths, oldest first.
 std::vector<int64_t> waiting_rows(const World& world) {
   const WorldHead& head = world.head();
   const int64_t waiting = std::clamp(head.death_log_count, 0, world.shape->death_log_rows);
@@ -111,7 +111,7 @@ nb::dict living_rows(PythonSimulation& self, int index) {
   return out;
 }
 
-/// Full observations of the living of one species, in their order, from the present state.
+/// Full observations of the living agents of one species, in their order, from the current state.
 nb::object observations(PythonSimulation& self, int index, int32_t species) {
   World& from = self.slotted(index);
   if (species < 0 || species >= from.shape->species) throw nb::index_error("no species has this index");
@@ -154,7 +154,7 @@ void set_scene(PythonSimulation& self, int index, FloatsIn x, FloatsIn y, Floats
   }
 }
 
-/// Gives the living of a world other genomes, in their order, and their networks what these genes set in a new one.
+/// Replaces the genomes of a world's living agents, in their order, and applies the genes that set parts of networks.
 void set_genomes(PythonSimulation& self, int index,
                  nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu> genomes) {
   self.slotted(index);
@@ -178,7 +178,7 @@ void set_genomes(PythonSimulation& self, int index,
   if (from.shape->bodies.own != 0) place_founders_again(from);
 }
 
-/// Gives the living of a species of a world other networks, in their order.
+/// Replaces the networks of the living agents of a species in a world, in their order.
 void set_networks(PythonSimulation& self, int index, int species,
                   nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu> networks) {
   self.slotted(index);
@@ -203,7 +203,7 @@ void set_networks(PythonSimulation& self, int index, int species,
   }
 }
 
-/// The address of a function `Rule`. It must stay as long as the simulation: the caller holds it.
+/// The address of a function `Rule`, which the caller must keep alive as long as the simulation.
 void set_rule(PythonSimulation& self, int32_t species, const std::string& use, uint64_t address,
               const std::string& name) {
   if (species < 0 || species >= self.get().shape().species) throw nb::index_error("no species has this index");

@@ -1,4 +1,4 @@
-/// The arrays of a world's state, by their paths, as NumPy sees them.
+/// Views of the arrays of a world's state, by path, for NumPy.
 #pragma once
 
 #include <nanobind/nanobind.h>
