@@ -53,6 +53,13 @@ def measure_forward(plan: Plan, _: Calibration) -> list[Row]:
 
 def measure_update(plan: Plan, _: Calibration) -> list[Row]:
     """One row per instruction set: the oldest agent learns from its last rollout."""
+    config, times = plan.config(), update_seconds(plan)
+    flop = sum(network_flop(config)) * config.species[ONLY].learning.update_epochs * config.world.rollout_steps
+    return [{"kernel": k, "threads": 1, "flop": flop, "update_seconds": times[k]} for k in plan.kernels]
+
+
+def update_seconds(plan: Plan) -> dict[str, list[float]]:
+    """Times of one learner's updates with each instruction set, in turns [s]."""
     config, world = plan.config(), peopled(plan)
     steps = config.world.rollout_steps
     slot = world.living[0]
@@ -79,9 +86,7 @@ def measure_update(plan: Plan, _: Calibration) -> list[Row]:
         params = learn(kernel)
         require_finite(f"update, {kernel}", params)
         require(not np.array_equal(params, arrays["params"]), f"update, {kernel}: no parameter changed")
-    times = interleave({kernel: lambda k=kernel: learn(k) for kernel in plan.kernels}, plan.repeats)
-    flop = sum(network_flop(config)) * config.species[ONLY].learning.update_epochs * steps
-    return [{"kernel": k, "threads": 1, "flop": flop, "update_seconds": times[k]} for k in plan.kernels]
+    return interleave({kernel: lambda k=kernel: learn(k) for kernel in plan.kernels}, plan.repeats)
 
 
 def table_forward(rows: list[Row], calibration: Calibration) -> Table:
