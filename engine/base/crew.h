@@ -1,5 +1,5 @@
-/// Who works on one piece of a phase: here a member of a team, alone. In a CUDA block, a tile of threads works on each
-/// of several pieces (`cuda/tile.h`), and all threads on a single one (`cuda/block_crew.h`).
+/// The crew that works on one piece of a phase: here a single member of a team. In a CUDA block, a tile of threads
+/// works on each of several pieces (`cuda/tile.h`), and all threads on a single one (`cuda/block_crew.h`).
 ///
 /// All threads of a crew call the same functions, each of which ends with a barrier of the crew. A loop body writes
 /// only data of its own index, so results do not depend on the size of the crew.
@@ -26,9 +26,9 @@ class Alone {
     body();
   }
 
-  /// Calls body(i) for i in [0, count), one group of consecutive i after another. Within the last group that there may
-  /// be, number `ordered`, each i waits for the one before it; within others, none does.
-  /// start   of each group, and `count` behind them
+  /// Calls body(i) for i in [0, count), one group of consecutive i after another. Within the group with number
+  /// `ordered`, the last one if it exists, each i waits for the one before it; within the others, none does. start   of
+  /// each group, and `count` behind them
   template <class Body>
   HEDON_INLINE void each_by_group(const int32_t*, int32_t count, int32_t, Body&& body) const {
     each(0, count, body);
@@ -53,7 +53,7 @@ class Alone {
     return count;
   }
 
-  /// Whether it is true on any thread.
+  /// Whether the value is true on any thread.
   HEDON_INLINE bool any(bool value) const { return value; }
 
   /// The largest value of any thread; none may be NaN.
@@ -62,7 +62,7 @@ class Alone {
   /// Sets bits of a word in which other threads may set bits at the same time.
   HEDON_INLINE void set_bits(uint64_t& word, uint64_t bits) const { word |= bits; }
 
-  /// Whether any i in [0, count) holds.
+  /// Whether holds(i) is true for any i in [0, count).
   template <class Holds>
   HEDON_INLINE bool any_of(int32_t count, Holds&& holds) const {
     for (int32_t i = 0; i < count; ++i) {

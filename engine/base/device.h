@@ -9,7 +9,7 @@
 #define HEDON_FN inline
 #endif
 
-/// For functions that are called from units compiled for one instruction set. They are always inlined: of several
+/// For functions that are called from units compiled for one instruction set. They are always inlined, since of several
 /// copies, the linker could keep one that other processors cannot run.
 #if defined(__CUDACC__)
 #define HEDON_INLINE __host__ __device__ __forceinline__

@@ -1,4 +1,4 @@
-/// One list of fields per struct. Programs use it to fill configs and to allocate, save and bind states.
+/// One list of fields per struct. The engine uses it to fill configs and to allocate, save and bind states.
 ///
 /// Write `HEDON_FIELDS(SolverConfig, dt, passes)` as the last line of a struct without padding. If a field is missing
 /// from the list, the sizes differ and the code does not compile.

@@ -9,9 +9,9 @@ namespace hedon {
 /// mode. Other libraries change these modes, and denormal numbers are slow on many processors. Each entry into the
 /// engine and each of its threads makes one, so that the bits of a seed do not depend on the caller.
 ///
-/// ARM flushes a result that is below the smallest normal number before it is rounded, x86 one that still is after. So
-/// x86 has ±2^-126, and ARM ±0, where a product, a fused one, or a double that becomes a float lies within 2^-151 below
-/// it. Sums, quotients and roots cannot lie there. No bit of a life hangs on it: lives are the same without flushing.
+/// ARM flushes a result that is below the smallest normal number before rounding, x86 one that still is after rounding.
+/// So x86 gives ±2^-126 and ARM ±0 if a product, a fused one, or a double converted to a float is within 2^-151 below
+/// it. Sums, quotients and roots cannot be there. No bit of a life depends on it: lives are the same without flushing.
 class FloatMode {
  public:
   /// flush  false: keep denormals, as on processors that cannot flush them

@@ -13,7 +13,7 @@ class Hash {
     mix(bytes);
     add_words(from, bytes);
   }
-  /// Without their number: of pieces one after the other, all but the last must be whole words.
+  /// Does not include the number of bytes. Of consecutive pieces, all but the last must be whole words.
   void add_words(const char* from, size_t bytes) {
     for (size_t at = 0; at < bytes; at += 8) {
       uint64_t word = 0;
@@ -31,7 +31,7 @@ class Hash {
   uint64_t value_ = 0x9E3779B97F4A7C15u;
 };
 
-/// The hash of many bytes, in four chains side by side: one alone waits for each multiplication.
+/// The hash of many bytes, in four parallel chains, since a single chain waits for each multiplication.
 inline uint64_t hash_bytes(const char* from, size_t bytes) {
   Hash chain[4];
   const size_t whole = bytes / 32 * 32;

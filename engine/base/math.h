@@ -30,14 +30,14 @@ HEDON_FN uint64_t double_to_bits(double value) {
   return bits;
 }
 
-/// The integer nearest to x, |x| < 2^51: after 1.5 · 2^52 is added, no bits are left for a fraction.
+/// The integer nearest to x, |x| < 2^51: adding 1.5 · 2^52 leaves no bits for a fraction.
 HEDON_FN double round_double(double x) {
   constexpr double SHIFT = 6755399441055744.0;
   return (x + SHIFT) - SHIFT;
 }
 
 /// e^x for any x; below -700 it is 0, above 700 it is e^700. Degree-11 Taylor polynomial on |r| <= ln(2)/2, with its
-/// terms in pairs of pairs, so that they do not wait for one another.
+/// terms in pairs of pairs, so that they can be computed in parallel.
 HEDON_FN double exp_double(double x) {
   if (x < -700.0) return 0.0;
   if (x > 700.0) x = 700.0;

@@ -6,7 +6,7 @@
 
 namespace hedon {
 
-/// What the threads wait on. The job, and whether to stop, are written before the round that the threads wait for.
+/// The data on which the threads wait. The job and the stop flag are written before the round that they wait for.
 struct Pool::Shared {
   std::atomic<uint32_t> round{0};
   std::atomic<uint32_t> busy{0};
@@ -38,7 +38,7 @@ Pool::Pool(int size, bool flush) : size_(size), process_(current_process()), sha
 bool Pool::whole() const { return size_ == 1 || shared_->threads.back().begun(); }
 
 Pool::~Pool() {
-  if (forked()) static_cast<void>(shared_.release());  // its threads are not there to be joined
+  if (forked()) static_cast<void>(shared_.release());  // its threads do not exist here and cannot be joined
 }
 
 bool Pool::forked() const { return current_process() != process_; }

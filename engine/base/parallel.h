@@ -20,7 +20,7 @@ class Pool {
 
   int size() const { return size_; }
 
-  /// Whether the system gave all threads; if not, nothing may run on the pool.
+  /// Whether the system provided all threads; if not, nothing may run on the pool.
   bool whole() const;
 
   /// True in a process that was forked from the one that made the pool: its threads do not exist there.

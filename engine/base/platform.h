@@ -1,6 +1,6 @@
-/// All that the engine asks of a system besides the standard library, such as its clock: memory and threads. One file
-/// answers for each kind of system: `platform_posix.cpp`, `platform_windows.cpp` and, for WebAssembly in a page,
-/// `platform_web.cpp`. Everything else is the same everywhere.
+/// All that the engine needs from a system beyond the standard library (which includes the clock): memory and threads.
+/// There is one implementation for each kind of system: `platform_posix.cpp`, `platform_windows.cpp` and, for
+/// WebAssembly in a page, `platform_web.cpp`. Everything else is the same on all systems.
 #pragma once
 
 #include <atomic>
@@ -11,37 +11,37 @@
 
 namespace hedon {
 
-/// Zeroed memory, in large pages where the system has them; null if it refuses. Pages that are never touched cost
-/// nothing where the system allows that.
+/// Zeroed memory, in large pages if the system has them; null if it refuses. Pages that are never touched cost nothing
+/// on systems that allow it.
 void* reserve_pages(size_t bytes);
 
-/// Gives memory back that `reserve_pages` gave.
+/// Releases memory from `reserve_pages`.
 void release_pages(void* block, size_t bytes);
 
-/// Puts a new file of a folder behind pages that `reserve_pages` gave: the system writes out what is not used where
-/// memory is short, and reads it again. The file has no name, takes its room at once, and goes when it is closed or
-/// the process ends. Returns its number, or minus the system's number of what went wrong.
+/// Backs pages from `reserve_pages` with a new file in a folder: when memory is short, the system writes unused pages
+/// out, and reads them again later. The file has no name, reserves its space at once, and disappears when it is closed
+/// or the process ends. Returns its descriptor, or the negative error number of the system.
 int64_t back_with_file(void* first, size_t bytes, const char* folder);
 
-/// Pages of such a file are soon read: all of them are fetched at once.
+/// Prefetches pages of such a file that will soon be read, all at once.
 void expect_in_file(const void* first, size_t bytes);
 
-/// What a part of such a file holds is needed no more: it is not read before it is written again.
+/// Discards a part of such a file, which will be written before it is read again.
 void forget_in_file(int64_t file, int64_t first, int64_t bytes);
 
-/// Closes such a file, after its pages were given back.
+/// Closes such a file, after its pages were released.
 void close_file(int64_t file);
 
-/// Memory of this machine [byte]. A page is not told.
+/// Memory of this machine [byte]; not known in a web page.
 int64_t physical_memory();
 
-/// Number of processors that this process may use; in a page, of threads that there can be.
+/// Number of processors that this process may use; in a web page, the number of possible threads.
 int available_processors();
 
-/// Which process this is: a forked one has another number.
+/// Identifies this process: a forked one has another number.
 int64_t current_process();
 
-/// A thread that calls `work` once; or none, if the system gives no more.
+/// A thread that calls `work` once; empty if the system refuses another thread.
 class Thread {
  public:
   explicit Thread(std::function<void()> work);
@@ -58,11 +58,10 @@ class Thread {
   std::unique_ptr<Handle> handle_;
 };
 
-/// Sleeps until `word` holds something else than `value`. Who changes it must do so sequentially consistently, and
-/// call `wake_all` after that.
+/// Sleeps until `word` differs from `value`. Change it with sequential consistency, and call `wake_all` afterwards.
 void sleep_while(const std::atomic<uint32_t>& word, uint32_t value);
 
-/// Wakes all who sleep on `word`.
+/// Wakes all threads that sleep on `word`.
 void wake_all(std::atomic<uint32_t>& word);
 
 }  // namespace hedon

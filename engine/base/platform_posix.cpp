@@ -1,4 +1,4 @@
-/// The system that a process of Linux, macOS or another kind of Unix has.
+/// The platform for processes on Linux, macOS and other kinds of Unix.
 #if !defined(__wasm__) && !defined(_WIN32)
 
 #include <fcntl.h>
@@ -32,7 +32,7 @@ void release_pages(void* block, size_t bytes) { munmap(block, bytes); }
 
 namespace {
 
-/// Gives a file its length and its room on the disk. Returns 0, or the number of what went wrong.
+/// Gives a file its length, and reserves its space on the disk. Returns 0, or the error number.
 int make_room(int file, off_t bytes) {
 #if defined(__APPLE__)
   fstore_t room = {F_ALLOCATEALL, F_PEOFPOSMODE, 0, bytes, 0};
@@ -58,7 +58,7 @@ int64_t back_with_file(void* first, size_t bytes, const char* folder) {
     return -problem;
   }
 #if defined(MADV_RANDOM)
-  madvise(first, bytes, MADV_RANDOM);  // a step writes a little into many places: their neighbors need not be fetched
+  madvise(first, bytes, MADV_RANDOM);  // a step writes a little in many places, so their neighbors need not be fetched
 #endif
   return file;
 }
@@ -72,7 +72,7 @@ void expect_in_file([[maybe_unused]] const void* first, [[maybe_unused]] size_t 
 
 void forget_in_file([[maybe_unused]] int64_t file, [[maybe_unused]] int64_t first, [[maybe_unused]] int64_t bytes) {
 #if defined(FALLOC_FL_ZERO_RANGE)
-  // It keeps the room on the disk. Where a file system does not know it, pages are read before they are written.
+  // Keeps the space on the disk. On file systems without support, pages are read before they are written.
   fallocate(static_cast<int>(file), FALLOC_FL_ZERO_RANGE, first, bytes);
 #endif
 }
@@ -99,7 +99,7 @@ struct Thread::Handle {
   std::function<void()> work;
 };
 
-// Not std::thread, which throws where the system gives no thread: the engine is built without exceptions.
+// Not std::thread, which throws if the system refuses a thread, while the engine is built without exceptions.
 Thread::Thread(std::function<void()> work) : handle_(std::make_unique<Handle>(Handle{{}, std::move(work)})) {
   const auto call = [](void* handle) -> void* {
     static_cast<Handle*>(handle)->work();

@@ -1,6 +1,6 @@
-/// The system that a web page is. It cannot start a thread while a function of the module runs, so threads are there
-/// before they are needed: a Web Worker for each takes a seat and serves there (`web/src/engine.js`). A seat has the
-/// stack of its thread. Members of a team allocate nothing, so the allocator needs no lock.
+/// The platform for web pages. A page cannot start a thread while a function of the module runs, so threads are started
+/// in advance: a Web Worker for each takes a seat and serves there (`web/src/engine.js`). A seat has the stack of its
+/// thread. Members of a team allocate nothing, so the allocator needs no lock.
 #if defined(__wasm__)
 
 #include <algorithm>
@@ -15,18 +15,18 @@
 
 namespace hedon {
 
-// Sleeping is the page's, not the module's own instructions: with some shapes of code around them, V8's quick compiler
-// (Node 20) loses their wakes.
+// The page implements sleeping, not the module's own instructions: with some code around these, V8's baseline compiler
+// (Node 20) loses wake-ups.
 
-/// Sleeps while `*word` is `value`, for a moment at most.
+/// Sleeps while `*word` is `value`, but only for a moment.
 HEDON_IMPORT(sleep_while) void page_sleep_while(const void* word, uint32_t value);
-/// Wakes all who sleep on a word.
+/// Wakes all threads that sleep on a word.
 HEDON_IMPORT(wake_all) void page_wake_all(const void* word);
 
 namespace {
 
 constexpr int SEATS = 16;
-constexpr size_t STACK = size_t{1} << 20;  ///< bytes, as the first thread has
+constexpr size_t STACK = size_t{1} << 20;  ///< bytes, as for the first thread
 
 struct Seat {
   std::atomic<uint32_t> busy{0};
@@ -37,7 +37,7 @@ Seat seats[SEATS];
 int seated = 0;
 std::atomic<uint32_t> stopped{0};  ///< the first thread that a trap has stopped, counted from 1; 0 for none
 
-/// Where a thread has its own memory; the worker reads it as two 32-bit integers.
+/// The addresses of a thread's own memory, which the worker reads as two 32-bit integers.
 struct Place {
   void* stack;  ///< the upper end
   void* locals;
@@ -46,11 +46,11 @@ Place place;
 
 }  // namespace
 
-/// The allocator stops where it would have to ask for 2 GB or more at once, but it gives what lies free in one piece.
-/// So it asks for the memory in parts, which lie one after the other, and become one piece as they are freed.
+/// The allocator fails if it has to request 2 GB or more at once, but it can return any free block that is contiguous.
+/// So this requests the memory in consecutive parts, which become one block when they are freed.
 void* reserve_pages(size_t bytes) {
   constexpr size_t PART = size_t{1} << 28;
-  constexpr size_t ROOM = 4096;  ///< for what the allocator notes of a block
+  constexpr size_t ROOM = 4096;  ///< for the allocator's header of a block
   if (bytes > SIZE_MAX - ROOM) return nullptr;
   void* parts[SIZE_MAX / PART + 1];
   int count = 0;
@@ -85,7 +85,7 @@ struct Thread::Handle {
 Thread::Thread(std::function<void()> work) {
   Seat* const end = seats + seated;
   Seat* const seat = std::find_if(seats, end, [](const Seat& each) { return !each.work; });
-  if (seat == end) abort();  // `available_processors` says how many threads there can be
+  if (seat == end) abort();  // `available_processors` limits the number of threads
   handle_ = std::make_unique<Handle>(Handle{seat});
   seat->work = std::move(work);
   seat->busy.store(1);
@@ -100,13 +100,13 @@ Thread::~Thread() {
 void sleep_while(const std::atomic<uint32_t>& word, uint32_t value) {
   while (word.load() == value) {
     page_sleep_while(&word, value);
-    if (stopped.load() != 0) __builtin_trap();  // nobody would ever change the word
+    if (stopped.load() != 0) __builtin_trap();  // otherwise the word would never change
   }
 }
 
 void wake_all(std::atomic<uint32_t>& word) { page_wake_all(&word); }
 
-/// Makes one more seat. Null if there are no more, or no memory for it.
+/// Makes one more seat. Null if there are no more seats, or no memory for it.
 HEDON_EXPORT(hedon_seat) const Place* hedon_seat() {
   if (seated == SEATS) return nullptr;
   const size_t locals = (__builtin_wasm_tls_size() + 63) / 64 * 64;
@@ -117,7 +117,7 @@ HEDON_EXPORT(hedon_seat) const Place* hedon_seat() {
   return &place;
 }
 
-/// What a worker does on a seat: one piece of work after the other. Returns never.
+/// Called by the worker of a seat: does one piece of work after another and never returns.
 HEDON_EXPORT(hedon_serve) void hedon_serve(int32_t index) {
   Seat& seat = seats[index];
   for (;;) {
@@ -128,7 +128,7 @@ HEDON_EXPORT(hedon_serve) void hedon_serve(int32_t index) {
   }
 }
 
-/// Tells the others that a thread, counted from 1, was stopped by a trap: any that wait are stopped too.
+/// Records that a trap has stopped a thread, counted from 1, so that all waiting threads stop too.
 HEDON_EXPORT(hedon_stop) void hedon_stop(uint32_t thread) {
   uint32_t none = 0;
   stopped.compare_exchange_strong(none, thread);

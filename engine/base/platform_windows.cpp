@@ -1,4 +1,4 @@
-/// The system that a process of Windows has.
+/// The platform for processes on Windows.
 #if defined(_WIN32)
 
 #define WIN32_LEAN_AND_MEAN
@@ -15,7 +15,7 @@
 
 namespace hedon {
 
-// Windows counts all of it against memory and its page file, also pages that are never touched.
+// Windows counts all of it against memory and its page file, including pages that are never touched.
 void* reserve_pages(size_t bytes) { return VirtualAlloc(nullptr, bytes, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE); }
 
 void release_pages(void* block, size_t) { VirtualFree(block, 0, MEM_RELEASE); }
@@ -26,7 +26,7 @@ int64_t physical_memory() {
   return GlobalMemoryStatusEx(&status) != 0 ? static_cast<int64_t>(status.ullTotalPhys) : 0;
 }
 
-// Its page file does that by itself, for all memory.
+// The page file already does that for all memory.
 int64_t back_with_file(void*, size_t, const char*) { return -ENOTSUP; }
 
 void expect_in_file(const void*, size_t) {}
@@ -35,7 +35,7 @@ void forget_in_file(int64_t, int64_t, int64_t) {}
 
 void close_file(int64_t) {}
 
-/// Of the processors' group that the process is in: at most 64.
+/// The processors in the group of the process: at most 64.
 int available_processors() {
   DWORD_PTR mine = 0, present = 0;
   GetProcessAffinityMask(GetCurrentProcess(), &mine, &present);

@@ -1,6 +1,6 @@
 /// Counter-based random numbers: every draw is a function of (seed, purpose, id, step, index) only.
 ///
-/// So results do not depend on threads or on the order of loops, and a checkpoint needs no state of a generator.
+/// So results do not depend on threads or on the order of loops, and a checkpoint needs no generator state.
 /// Source: Salmon et al. (2011), "Parallel random numbers: as easy as 1, 2, 3", Philox4x32-10.
 #pragma once
 

@@ -34,7 +34,7 @@ struct StatusText {
   const char* remedy;
 };
 
-/// For errors that no setting explains.
+/// For errors that no setting can explain.
 inline constexpr const char* REPEAT =
     "Run `hedon check RUN --fault`. If the fault does not happen again, the likely cause is bad memory in this "
     "machine.";

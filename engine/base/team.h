@@ -1,4 +1,4 @@
-/// Threads that run the same code over the same world: the group that every step rule is written for.
+/// Threads that run the same code over the same world: the group for which every step rule is written.
 ///
 /// Each member calls the same functions. `for_each` and `once` end with a barrier, so a phase can read what the phase
 /// before it wrote. A loop body writes only data of its own index, so results do not depend on the size of the team.
@@ -27,8 +27,8 @@ class Team {
   int rank() const { return rank_; }
   int size() const { return size_; }
 
-  /// Waits until all members arrive. First spins, since phases last microseconds; then sleeps: if other programs use
-  /// the processors too, a spinning member can keep the member that it waits for from running.
+  /// Waits until all members arrive. First spins, since phases last microseconds; then sleeps, because if other
+  /// programs use the processors too, a spinning member can keep the member that it waits for from running.
   void barrier() {
     if (size_ == 1) return;
     const uint32_t phase = state_->phase.load(std::memory_order_relaxed);
@@ -100,7 +100,7 @@ class Team {
   }
 
  private:
-  static constexpr int SPINS = 2000;  ///< about 25 µs, longer than the phases in which one member works alone
+  static constexpr int SPINS = 2000;  ///< about 25 µs, longer than the phases in which only one member works
 
   static void relax() {
 #if defined(__x86_64__)

@@ -64,7 +64,7 @@ std::string PythonSimulation::step_batch(const BatchCall& call, const BatchIn& i
     if (in.world[i] != i && !(alike_ == turn_ && in.world[i] == 0))
       return "the states are not in the order of the worlds";
     if (in.turn[i] != turn_)
-      return "stale state: a later step or reset has used its worlds, or they are those of another environment; go on "
+      return "stale state: a later step or reset has used its worlds, or they belong to another environment; continue "
              "with the state that was returned last";
   }
   if (call.begins == 0) {

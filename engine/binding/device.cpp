@@ -30,7 +30,7 @@ void need_fit(const DeviceProgram& program, const Config& config) {
 /// The function of a device's library that gives its program.
 DeviceEntry find_entry(const std::string& file) {
 #if defined(_WIN32)
-  throw EngineError(file + " cannot be loaded: there are devices on Linux alone");
+  throw EngineError(file + " cannot be loaded: devices are supported only on Linux");
 #else
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw EngineError("the library of the device cannot be loaded: " + std::string(dlerror()));

@@ -285,52 +285,52 @@ void bind_simulation(nb::module_& module) {
             return to_arrays(s.get().save(world));
           },
           nb::arg("world"), nb::sig("def save(self, world: int) -> dict[str, numpy.typing.NDArray[typing.Any]]"),
-          "Copies of everything that decides a world's future, as arrays.")
+          "Copies of everything that determines a world's future, as arrays.")
       .def("save_to", &save_to, nb::arg("world"), nb::arg("begin"), nb::arg("piece"),
            nb::sig("def save_to(self, world: int, begin: typing.Callable[[str, str, list[int]], object], "
                    "piece: typing.Callable[[bytes], object]) -> None"),
-           "The same in pieces, for one who has no memory for copies: begin(name, type, shape) for each array in turn, "
-           "then piece(bytes) until all its bytes are given.")
+           "The same in pieces, without memory for copies: begin(name, type, shape) for each array in turn, then "
+           "piece(bytes) until all its bytes are passed.")
       .def("restore", &restore_from, nb::arg("world"), nb::arg("arrays"),
            nb::sig("def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[typing.Any]]) -> None"),
            "Replaces a world by a saved one. ValueError: what is wrong; the world is then unchanged.")
       .def("pack", &pack, nb::arg("head"),
-           "All worlds with their seeds, and a text of the caller's, as one string of bytes.")
+           "All worlds with their seeds, and a text of the caller's, as one byte string.")
       .def_static("packed_head", &packed_head, nb::arg("packed"),
-                  "The caller's text in what `pack` gave. ValueError: it is damaged, or something else.")
+                  "The caller's text in the result of `pack`. ValueError: it is damaged, or not a result of `pack`.")
       .def("unpack", &unpack_into, nb::arg("packed"),
-           "Replaces all worlds, and their seeds, by those in what `pack` gave, in which `packed_head` has found no "
-           "damage. ValueError: what is wrong; all worlds are then unchanged.")
+           "Replaces all worlds, and their seeds, by the ones in the result of `pack`, in which `packed_head` has "
+           "found no damage. ValueError: what is wrong; all worlds are then unchanged.")
       .def("reset", &S::reset, nb::arg("world"), nb::arg("seed"), "Begins a world again with this seed.")
       .def(
           "seed", [](S& s, int world) { return s.world(world).seed; }, nb::arg("world"))
       .def("set_rule", &set_rule, nb::arg("species"), nb::arg("use"), nb::arg("address"), nb::arg("name"),
            "Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double "
-           "*records, double *answers). Faults of the rule tell its name.")
+           "*records, double *answers). Messages about faults of the rule contain its name.")
       .def("wrong_action", &wrong_action, nb::arg("species"), nb::arg("actions"), nb::arg("form") = "logit",
            nb::sig("def wrong_action(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = "
                    "'logit') -> int"),
-           "Which number of a living agent cannot be its action, as `set_actions` would say; nobody is told anything.")
+           "The index of an invalid action of a living agent, as from `set_actions`, or -1; sets no action.")
       .def("set_actions", &set_actions, nb::arg("species"), nb::arg("actions"), nb::arg("form") = "logit",
            nb::sig("def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = "
                    "'logit') -> int"),
-           "Tells the agents of an external species what to do from now on: (worlds, slots, 2), as `unit`, `force` or "
-           "`logit`. Returns -1, or which number of a living agent is out of bounds; then nobody is told anything.")
+           "Sets the actions of the agents of an external species from now on: (worlds, slots, 2), as `unit`, `force` "
+           "or `logit`. Returns -1, or the index of a living agent's action out of bounds; then no action is set.")
       .def(
           "read_observations", &read_observations, nb::arg("species"), nb::arg("observation"), nb::arg("reward"),
           nb::arg("agent_id"),
           nb::sig("def read_observations(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: "
                   "numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> int"),
-          "Writes what the agents of an external species sense, what they earned in the last step, and their ids into "
-          "arrays of (worlds, slots, …). Returns in how many slots another agent, or none, is than `agent_id` had.")
+          "Writes the observations of an external species' agents, their rewards in the last step, and their ids into "
+          "arrays of (worlds, slots, …). Returns in how many slots the agent differs from `agent_id`.")
       .def("read_rewards", &read_rewards, nb::arg("species"), nb::arg("reward"), nb::arg("agent_id"),
            nb::sig("def read_rewards(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: "
                    "numpy.typing.NDArray[numpy.int32]) -> None"),
-           "The same without what they sense.")
+           "The same without observations.")
       .def("meals", &meals_of, nb::arg("species"),
            nb::sig("def meals(self, species: int) -> numpy.typing.NDArray[numpy.int64]"),
-           "What the agents of a species have eaten since the worlds began, foods by kind and then agents by species: "
-           "(worlds, meals).")
+           "Numbers of meals of a species since the worlds began, foods by kind and then agents by species: (worlds, "
+           "meals).")
       .def("set_scene", &set_scene, nb::arg("world"), nb::arg("x"), nb::arg("y"), nb::arg("angle"), nb::arg("energy"),
            nb::arg("species"), nb::arg("food_x"), nb::arg("food_y"), nb::arg("food_kind"),
            "Empties a world and puts these agents and foods into it.")
@@ -384,12 +384,12 @@ void bind_simulation(nb::module_& module) {
             out["copying"] = seconds.copying;
             return out;
           },
-          "Seconds that devices spent in each kernel, and copying; zeros where there is no device.")
+          "Seconds that devices spent in each kernel, and copying; zeros without devices.")
       .def_prop_ro(
           "id", [](S& s) { return s.id(); }, "A number that no other simulation of this process has, for `step_batch`.")
       .def_prop_rw(
           "turn", [](S& s) { return s.turn(); }, [](S& s, uint32_t turn) { s.set_turn(turn); },
-          "That `step_batch` goes on from.")
+          "The turn of the state from which `step_batch` continues.")
       .def_prop_ro("device_count", [](S& s) { return s.get().device_count(); })
       .def_prop_ro("world_count", [](S& s) { return s.get().world_count(); })
       .def_prop_ro("threads", [](S& s) { return s.get().pool().size(); })

@@ -1,4 +1,4 @@
-/// What structs of settings are made of: choices with their names, limits of numbers, and pairs.
+/// Building blocks of settings: choices with their names, limits of numbers, and pairs.
 #pragma once
 
 #include <concepts>
@@ -13,7 +13,7 @@ namespace hedon {
 template <class E>
 struct EnumNames;
 
-/// An enumeration whose values are called by their own names.
+/// An enumeration whose values are named like their identifiers.
 #define HEDON_ENUM(Enum, ...)                                                               \
   enum class Enum : int32_t { __VA_ARGS__ };                                                \
   template <>                                                                               \
@@ -22,8 +22,9 @@ struct EnumNames;
   };
 #define HEDON_ENUM_NAME(Enum, value) #value,
 
-/// Which numbers a setting allows. A struct of settings has `LIMITS`, one for each field; the one of a list holds for
-/// all its numbers, that of a schedule for its factors, and what has no numbers of its own has `Limit()`.
+/// The numbers that a setting allows. A struct of settings has `LIMITS`, one for each field. The limit of a list
+/// applies to all its numbers, the limit of a schedule to its factors; fields without numbers of their own have
+/// `Limit()`.
 struct Limit {
   double low = 0.0, high = 0.0;
   bool above = false;  ///< `low` itself is not allowed
@@ -39,7 +40,7 @@ struct Limit {
   }
 };
 
-/// The factor of a schedule from a step on.
+/// The factor of a schedule, starting at a step.
 struct SchedulePoint {
   int32_t step;
   float factor;

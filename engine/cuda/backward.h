@@ -86,8 +86,8 @@ HEDON_FN void hidden_backward_by_block(const Block& block, const BlockUpdate& on
   });
 }
 
-/// Adds x times the derivatives of a sample to a row of the first layer's gradient, 4 units of it. Keeps the row until
-/// another one comes.
+/// Adds x times the derivatives of a sample to a row of the first layer's gradient, 4 units of it. Holds the row until
+/// a different one is needed.
 struct RowSum {
   float* gradient;  ///< of the first of the 4 units
   const float* slopes;

@@ -1,4 +1,4 @@
-/// The threads of a CUDA block as the group that every step rule is written for: see `base/team.h`.
+/// The threads of a CUDA block as the group for which every step rule is written: see `base/team.h`.
 #pragma once
 
 #include "cuda/block_crew.h"
@@ -35,8 +35,8 @@ class Block {
     barrier();
   }
 
-  /// Calls body(crew, i) for i in [0, count), each time with a whole tile. The two tiles of a warp would wait for one
-  /// another where they go different ways, so no warp gets a second piece before all have one.
+  /// Calls body(crew, i) for i in [0, count), each time with a whole tile. The two tiles of a warp would wait for each
+  /// other when they diverge, so no warp gets a second piece before all have one.
   template <class Body>
   HEDON_INLINE void for_each_by_crew(int count, Body&& body) const {
     for (int i = tile() / 2 + tile() % 2 * (tiles() / 2); i < count; i += tiles()) body(Tile{}, i);

@@ -57,7 +57,7 @@ class BlockCrew {
       const int32_t k = key(i);
       if (k >= 0) next[item(i)] = thread_exchange(head[k], item(i));
     });
-    // They came in any order.
+    // They arrived in arbitrary order.
     each(0, keys, [&](int32_t k) {
       int32_t left = head[k];
       head[k] = -1;
@@ -125,7 +125,7 @@ class BlockCrew {
       before += other < tile ? of_tile[other] : 0;
       all += of_tile[other];
     }
-    block_barrier();  // all have read, so they may be written again
+    block_barrier();  // all threads have read the values, so they may be overwritten
     return before + sum - value;
   }
 };

@@ -1,4 +1,4 @@
-"""Builds the library of CUDA devices beside the installed engine: `python engine/cuda/build.py [FILE]`, or `make cuda`.
+"""Builds the library of CUDA devices next to the engine: `python engine/cuda/build.py [FILE]`, or `make cuda`.
 
 It takes nvcc and a C++ compiler, no device and no other part of CUDA: nvcc from PATH or CUDA_HOME, or from the package
 `nvidia-cuda-nvcc` (`uv sync --group cuda`). Only the standard library is used, so that it runs on bare machines.
@@ -40,7 +40,7 @@ def find_nvcc() -> Path | None:
 
 
 def runtime_options(nvcc: Path) -> list[str]:
-    """Options that name where CUDA's runtime lies, which the packages keep in another folder than nvcc expects."""
+    """Options with the location of CUDA's runtime, which the packages keep in another folder than nvcc expects."""
     folders = [nvcc.resolve().parents[1] / name for name in ("lib", "lib64")]
     return [f"-L{folder}" for folder in folders if folder.is_dir()]
 

@@ -18,8 +18,8 @@ __global__ void __launch_bounds__(BLOCK_THREADS) run_kernel(const Kernel kernel)
   kernel(static_cast<int32_t>(blockIdx.x));
 }
 
-/// What went wrong, as a text that stays until the thread's next call; "" for success. Forgets a failure that the
-/// device can go on after: else the next launch would report it.
+/// The error, as a text that is valid until the thread's next call; "" for success. Clears an error that the device can
+/// recover from; otherwise the next launch would report it.
 const char* text_of(cudaError_t error) {
   static thread_local std::string text;
   if (error == cudaSuccess) return "";
@@ -28,7 +28,7 @@ const char* text_of(cudaError_t error) {
   return text.c_str();
 }
 
-/// Two moments around a kernel.
+/// Two events around a kernel.
 struct Lap {
   DevicePart part;
   cudaEvent_t begin = nullptr, end = nullptr;
@@ -37,7 +37,7 @@ struct Lap {
 thread_local int32_t used = 0;
 std::vector<Lap> laps_of[MAX_DEVICES];
 
-/// Starts a kernel after those before it. Only the first failure of several launches is of interest.
+/// Starts a kernel after the previous ones. Only the first failure of several launches matters.
 template <class Kernel>
 cudaError_t start(const Kernel& kernel, int64_t floats) {
   const int bytes = static_cast<int>(floats * static_cast<int64_t>(sizeof(float)));
@@ -48,7 +48,7 @@ cudaError_t start(const Kernel& kernel, int64_t floats) {
   return cudaGetLastError();
 }
 
-/// The same with a note of the moments before and after it.
+/// The same, with events recorded before and after it.
 template <class Kernel>
 cudaError_t start_timed(const Kernel& kernel, int64_t floats) {
   Lap lap{Kernel::PART};
@@ -79,7 +79,7 @@ const char* open_devices() {
     if (asked != cudaSuccess) return text_of(asked);
     if (shared < SHARED_FLOATS * static_cast<int>(sizeof(float)))
       return "its blocks have too little shared memory: it takes a device of compute capability 9.0 or 10.0 "
-             "(CUDA_VISIBLE_DEVICES says which devices are used)";
+             "(CUDA_VISIBLE_DEVICES selects the devices)";
   }
   return "";
 }
@@ -96,7 +96,7 @@ int32_t learners_at_once() {
   return multiprocessors;
 }
 
-/// What a kernel needs, with this much shared memory.
+/// The resources that a kernel needs, with this much shared memory.
 template <class Kernel>
 std::string describe_kernel(const char* name, int64_t floats) {
   const size_t bytes = static_cast<size_t>(floats) * sizeof(float);

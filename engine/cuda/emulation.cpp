@@ -11,12 +11,12 @@ namespace hedon {
 namespace {
 
 constexpr int32_t LEARNERS_AT_ONCE = 2;  ///< several, so that blocks take learners in turn
-constexpr int32_t DEVICES = 2;           ///< several, so that worlds are dealt out
+constexpr int32_t DEVICES = 2;           ///< several, so that worlds are divided among them
 
 int32_t used = 0;
 double seconds_of[DEVICES][DEVICE_PARTS];
 int64_t runs_left = -1;   ///< until the device is lost; negative for never
-int64_t most_bytes = -1;  ///< that are given at once; negative for any number
+int64_t most_bytes = -1;  ///< largest allocation; negative for no limit
 
 bool lost() { return runs_left == 0; }
 
@@ -31,7 +31,7 @@ void emulate(const Kernel& kernel, int64_t floats) {
 const char* advance(const DeviceWorlds& worlds, int64_t step, int64_t steps) {
   using Clock = std::chrono::steady_clock;
   if (runs_left > 0) --runs_left;
-  if (lost()) return "";        // as on a device: a failure shows when one waits
+  if (lost()) return "";        // as on a device, where a failure shows at the next wait
   const FloatMode mode(false);  // a device keeps denormals
   advance_worlds(worlds, step, steps, [](const auto& kernel, int64_t floats) {
     const Clock::time_point begun = Clock::now();
@@ -88,7 +88,7 @@ const DeviceProgram PROGRAM = {
 
 extern "C" __attribute__((visibility("default"))) const hedon::DeviceProgram* hedon_device() { return &hedon::PROGRAM; }
 
-/// For tests of failures: the devices are lost in the N-th run from now, and give at most that many bytes at once.
+/// For tests of failures: the devices are lost in the N-th run from now, and allocate at most this many bytes at once.
 extern "C" __attribute__((visibility("default"))) void hedon_emulation_fails(int64_t run, int64_t bytes) {
   hedon::runs_left = run;
   hedon::most_bytes = bytes;

@@ -41,7 +41,7 @@ class Barrier {
 #endif
 };
 
-/// What the threads of a tile give one another. Two sets in turn: a thread can be one exchange ahead.
+/// Values exchanged by the threads of a tile. Two alternating sets, since a thread can be one exchange ahead.
 struct Tile {
   Barrier barrier{TILE};
   uint32_t given[2][TILE];
@@ -63,7 +63,7 @@ struct Thread {
 
 thread_local Thread* self = nullptr;
 
-/// Gives a number to the tile; returns those of all its threads.
+/// Shares a number with the tile; returns the numbers of all its threads.
 const uint32_t* exchange(uint32_t number) {
   Tile& tile = self->block->tiles[static_cast<size_t>(self->rank / TILE)];
   uint32_t* const given = tile.given[self->turn];
@@ -104,18 +104,18 @@ void run_threads(EmulatedBlock& block, const std::function<void()>& body) {
 
 constexpr size_t STACK_BYTES = 256 * 1024;
 
-/// A stack that is left for a while; the address sanitizer wants to know which one is in use.
+/// A suspended stack. The address sanitizer must know which stack is in use.
 struct Stack {
   const void* first = nullptr;
   size_t bytes = 0;
 #if defined(__SANITIZE_ADDRESS__)
   void* frames = nullptr;
 
-  /// Leaves this stack for another one; `last` if for good.
+  /// Switches from this stack to another one; `last` if it will not be resumed.
   void leave_for(const Stack& to, bool last = false) {
     __sanitizer_start_switch_fiber(last ? nullptr : &frames, to.first, to.bytes);
   }
-  /// Arrives on this stack; learns where the stack lies that was left.
+  /// Arrives on this stack; gets the address of the stack that was left.
   void arrive(Stack& from) { __sanitizer_finish_switch_fiber(frames, &from.first, &from.bytes); }
 #else
   void leave_for(const Stack&, bool = false) {}
@@ -123,7 +123,7 @@ struct Stack {
 #endif
 };
 
-/// One thread of a block: it runs until it waits, then the next one does.
+/// One thread of a block. It runs until it waits, and then the next one runs.
 struct Fiber {
   Thread thread;
   Stack place;
@@ -138,7 +138,7 @@ Stack scheduler_place;
 std::vector<std::unique_ptr<Fiber> > fibers;
 Fiber* running = nullptr;
 const std::function<void()>* job = nullptr;
-bool moved = false;  ///< whether any fiber came further in this round
+bool moved = false;  ///< whether any fiber made progress in this round
 
 void begin_fiber() {
   running->place.arrive(scheduler_place);

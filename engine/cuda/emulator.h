@@ -10,8 +10,8 @@
 
 namespace hedon {
 
-/// A barrier of each block, and one of each tile, counted from 0, at which no thread waits; none if negative. For tests
-/// that a mistake shows.
+/// The numbers, from 0, of a barrier of each block and of one of each tile at which no thread waits; none if negative.
+/// For tests that such an error is detected.
 inline int64_t lost_barrier = -1, lost_tile_barrier = -1;
 
 /// Runs blocks 0 … blocks - 1 of `threads` threads each, one block after another, as kernel(block).

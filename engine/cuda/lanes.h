@@ -1,7 +1,7 @@
 /// 16 floats over the 16 threads of a tile: each holds one lane. `lanes/avx512.h` describes the operations.
 ///
-/// All threads of a tile call these functions together. So the kernels of the CPU run here unchanged: what they load
-/// and store is each thread's own lane, and numbers that they broadcast are the same in all threads.
+/// All threads of a tile call these functions together. So the kernels of the CPU run here unchanged: each thread loads
+/// and stores its own lane, and broadcast numbers are the same in all threads.
 #pragma once
 
 #include <cstring>

@@ -21,11 +21,11 @@ struct BlockUpdate {
   const NetworkShape& shape;
   const LearningConfig& config;
   LearningLayout at;
-  Learner learner;  ///< what is updated: in shared memory, except moments that do not fit
+  Learner learner;  ///< the data to update, in shared memory except for moments that do not fit
   float* gradient;
   float* w2_transposed;
   float* hidden1;  ///< later the derivatives of the first layer's sums
-  float* hidden2;  ///< the same of the second
+  float* hidden2;  ///< the same for the second layer
   float* folded_bias;
   BlockSamples* samples;
   float* parts;
@@ -37,10 +37,10 @@ struct BlockUpdate {
 
 static_assert(sizeof(BlockSamples) == SAMPLE_ARRAYS * BLOCK * sizeof(float));
 
-/// Samples or rows of a tile: so few that each thread of a block has one.
+/// Samples or rows of a tile, few enough that each thread of a block has a tile.
 inline constexpr int TILE_ROWS = 2;
 
-/// As many neighboring floats as a tile has rows.
+/// As many adjacent floats as a tile has rows.
 struct __attribute__((may_alias, aligned(TILE_ROWS * 4))) Column {
   float v[TILE_ROWS];
 };

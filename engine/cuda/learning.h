@@ -1,7 +1,7 @@
 /// One learner's update by one block: all minibatches with parameters, gradient and moments in shared memory.
 ///
-/// Every sum runs in the order of the CPU's kernels (`kernel/ppo_gradient.h`), so the bits are those of AVX2 and
-/// AVX-512, whatever the number of threads. A thread computes tiles of 2 samples by 4 units.
+/// Every sum runs in the order of the CPU's kernels (`kernel/ppo_gradient.h`), so the bits match AVX2 and AVX-512,
+/// whatever the number of threads. A thread computes tiles of 2 samples by 4 units.
 #pragma once
 
 #include "cuda/backward.h"
@@ -40,7 +40,7 @@ HEDON_FN void gradient_of_samples(const Block& block, const BlockUpdate& on, con
   block.barrier();
 }
 
-/// What is computed once for a minibatch: the folded bias, the transposed square layer, empty sums.
+/// Prepares a minibatch: the folded bias, the transposed square layer, empty sums.
 HEDON_FN void begin_minibatch(const Block& block, const BlockUpdate& on) {
   const float* const params = on.params();
   fold_bias_by(block, on.shape, params + on.shape.b1(), on.folded_bias,
@@ -122,7 +122,7 @@ HEDON_FN BlockUpdate begin_update(const Block& block, const NetworkShape& shape,
           reinterpret_cast<int32_t*>(memory + at.index)};
 }
 
-/// Copies what was learned back to global memory, and what the agent acts with.
+/// Copies the learner back to global memory, and the weights with which the agent acts.
 HEDON_FN void finish_update(const Block& block, const BlockUpdate& on, const Learner& home, int64_t updates,
                             const ActingNetwork& network) {
   block.for_each(on.shape.size(), [&](int i) {
@@ -135,7 +135,7 @@ HEDON_FN void finish_update(const Block& block, const BlockUpdate& on, const Lea
   block.barrier();
 }
 
-/// Advantages on one thread, while others make the orders of the epochs, each from its own draws.
+/// Computes advantages on one thread, while others make the orders of the epochs, each from its own draws.
 HEDON_FN PpoBatch prepare_update(const Block& block, const LearningConfig& config, const Rollout& rollout,
                                  const RandomStream& stream, float* scratch) {
   const int32_t count = rollout.count;

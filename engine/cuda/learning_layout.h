@@ -1,4 +1,4 @@
-/// What an update keeps where in the shared memory of its block.
+/// The layout of an update in the shared memory of its block.
 #pragma once
 
 #include "kernel/ppo_scratch.h"
@@ -10,8 +10,8 @@ namespace hedon {
 /// Guide, table of technical specifications.
 inline constexpr int32_t SHARED_FLOATS = 227 * 1024 / 4;
 
-/// From one row of a hidden layer to the next [floats]. Four more than a row: then neighboring rows begin in other
-/// banks.
+/// From one row of a hidden layer to the next [floats]. Four more than a row, so that neighboring rows begin in
+/// different banks.
 inline constexpr int32_t HIDDEN_STRIDE = HIDDEN + 4;
 
 /// Sums of the loss over a minibatch: the bias of each output, and the log-sd of each action.

@@ -1,4 +1,4 @@
-/// What agents act with, computed from their parameters by any number of threads.
+/// Computes the weights with which agents act from their parameters, with any number of threads.
 #pragma once
 
 #include "cuda/block.h"
@@ -7,7 +7,7 @@
 
 namespace hedon {
 
-/// One thread alone, where one thread does the serial part of a step.
+/// A single thread, for the serial part of a step.
 struct OneThread {
   template <class Body>
   HEDON_INLINE void each(int count, Body&& body) const {
@@ -41,7 +41,7 @@ HEDON_FN float unpack_weight(const float* packed, int32_t row, int unit) {
   return second;
 }
 
-/// See `NetworkKernels::pack_weights`. params   those of the network, possibly in shared memory
+/// See `NetworkKernels::pack_weights`. params   of the network, possibly in shared memory
 template <class Group>
 HEDON_FN void pack_weights_by(const Group& group, const NetworkShape& shape, const float* params,
                               const ActingNetwork& network) {
@@ -60,7 +60,7 @@ HEDON_FN void pack_weights_by(const Group& group, const NetworkShape& shape, con
                [&](int32_t row, int unit) { return unpack_weight(network.packed_weights, row, unit); });
 }
 
-/// For `NetworkKernels::pack_weights`: what a birth calls.
+/// The `NetworkKernels::pack_weights` that a birth calls.
 HEDON_FN void pack_weights_alone(const NetworkShape& shape, const ActingNetwork& network) {
   pack_weights_by(OneThread{}, shape, network.params, network);
 }

@@ -1,4 +1,4 @@
-/// What agents sense and do, by the threads of a block: one tile of 16 threads for each agent.
+/// Observation and action of agents on the threads of a block: one tile of 16 threads for each agent.
 #pragma once
 
 #include "cuda/block.h"
@@ -21,7 +21,7 @@ struct TileKernel {
   }
 };
 
-/// Leaves out the circles of types that a species does not see, on one thread; all get the counts.
+/// Removes the circles of types that a species does not see, on one thread; all threads get the counts.
 HEDON_FN void drop_unseen_by_tile(const Block& block, const RayScene& scene, const Channels& sight,
                                   RayCandidates& candidates) {
   block.once_by_tile([&] { drop_unseen(scene, sight, candidates); });
@@ -78,7 +78,7 @@ HEDON_FN void forward_by_tile(const NetworkShape& shape, const ActingNetwork& ne
   tile_barrier();
 }
 
-/// Mean (2) and value of the agent in `slot`, to all threads of the tile.
+/// Gives mean (2) and value of the agent in `slot` to all threads of the tile.
 HEDON_FN void output_of(const Block& block, const World& world, int32_t slot, const PackedObservation& observation,
                         float* output) {
   float* const hidden = shared_memory() + block.tile() * SENSE_FLOATS;

@@ -1,7 +1,8 @@
-/// What a thread of a block knows and how it talks with the others: CUDA's own, or the emulation's (`emulator.h`).
+/// The identity of a thread within its block, and its communication with others: CUDA's or the emulator's
+/// (`emulator.h`).
 ///
-/// A *tile* is 16 neighboring threads: each of them holds one of 16 lanes (`lanes.h`). All threads of a tile take the
-/// same way to its barrier, ballots and reads; all threads of a block to the block's barrier.
+/// A *tile* is 16 neighboring threads: each of them holds one of 16 lanes (`lanes.h`). All threads of a tile reach
+/// its barriers, ballots and reads together, and all threads of a block reach the block's barriers together.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +23,12 @@ HEDON_INLINE void block_barrier() { __syncthreads(); }
 HEDON_INLINE uint32_t tile_mask() { return 0xFFFFu << (threadIdx.x & 16u); }
 HEDON_INLINE void tile_barrier() { __syncwarp(tile_mask()); }
 
-/// One bit per thread of the tile: where `holds` is true.
+/// A mask with one bit per thread of the tile, set if its `holds` is true.
 HEDON_INLINE uint32_t tile_ballot(bool holds) {
   return __ballot_sync(tile_mask(), holds) >> (threadIdx.x & 16u) & 0xFFFFu;
 }
 
-/// The value that another thread of the tile gives.
+/// The value of another thread of the tile.
 HEDON_INLINE float tile_read(float value, int lane) { return __shfl_sync(tile_mask(), value, lane, TILE); }
 
 /// Sets bits of a word in which other threads may set bits at the same time.
@@ -38,7 +39,7 @@ HEDON_INLINE void thread_set_bits(uint64_t& word, uint64_t bits) {
 /// Puts a value in a place where other threads may put theirs at the same time; returns what was there.
 HEDON_INLINE int32_t thread_exchange(int32_t& place, int32_t value) { return atomicExch(&place, value); }
 
-/// The block's shared memory, aligned to 16 bytes; its size is given at the launch. Filled by nobody.
+/// The block's shared memory, aligned to 16 bytes; its size is given at the launch. It is not initialized.
 HEDON_INLINE float* shared_memory() {
   extern __shared__ float4 memory[];
   return reinterpret_cast<float*>(memory);
@@ -79,12 +80,12 @@ float* shared_memory();
 
 HEDON_INLINE int thread_lane() { return thread_rank() % TILE; }
 
-/// The count, below 2^24, that another thread of the tile gives.
+/// The count, below 2^24, of another thread of the tile.
 HEDON_INLINE int32_t tile_read_count(int32_t count, int lane) {
   return static_cast<int32_t>(tile_read(static_cast<float>(count), lane));
 }
 
-/// Bits that are set.
+/// The number of set bits.
 HEDON_INLINE int count_bits(uint32_t bits) {
 #if defined(__CUDA_ARCH__)
   return __popc(bits);

@@ -1,7 +1,7 @@
 /// Windows of many worlds as three kernels: step all worlds, update all learners, close the windows.
 ///
 /// Each kernel is a functor that the threads of a block call with the block's number. CUDA and the emulation run the
-/// same ones.
+/// same kernels.
 #pragma once
 
 #include "cuda/learning.h"
@@ -11,7 +11,7 @@
 
 namespace hedon {
 
-/// Threads of a block, also of the emulated ones unless a test asks for fewer.
+/// Threads of a block, including emulated ones unless a test requests fewer.
 #if !defined(HEDON_BLOCK_THREADS)
 #define HEDON_BLOCK_THREADS 512
 #endif
@@ -53,7 +53,7 @@ struct StepWorlds {
   }
 };
 
-/// Updates the learners of all worlds, in blocks that each take every n-th one.
+/// Updates the learners of all worlds; each of n blocks takes every n-th learner.
 struct LearnWorlds {
   static constexpr DevicePart PART = DevicePart::learn;
   DeviceWorlds on;
@@ -63,7 +63,7 @@ struct LearnWorlds {
   HEDON_FN void operator()(int32_t b) const {
     const Block block;
     const int32_t capacity = on.worlds[0].shape->capacity;
-    // The first learners of all worlds, then the second ones, and so on: every block has as many, more or less.
+    // The first learners of all worlds, then the second ones, and so on, so that blocks have nearly equal numbers.
     for (int32_t i = b; i < on.count * capacity; i += blocks()) {
       const World& world = on.worlds[i % on.count];
       const int32_t rank = i / on.count;
@@ -92,13 +92,13 @@ struct CloseWindows {
     Block block;
     World& world = on.worlds[b];
     if (world.over()) return;
-    block.barrier();  // all threads have seen that the world goes on, so it may end
+    block.barrier();  // all threads have seen that the world is not over, so it may end now
     block.once([&] { close_window(world, count_taught(world)); });
     audit(block, world, [](int32_t) {});
   }
 };
 
-/// Fills the table of what single threads call, whose addresses the host does not know.
+/// Fills the table of functions that single threads call, whose addresses the host does not know.
 struct FillKernel {
   Kernel* kernel;
 
@@ -119,7 +119,7 @@ inline int64_t learning_floats(const DeviceWorlds& on) {
   return most;
 }
 
-/// Advances all worlds. `launch(kernel, floats)` runs a kernel after those before it.
+/// Advances all worlds. `launch(kernel, floats)` runs a kernel after the previous ones.
 template <class Launch>
 void advance_worlds(const DeviceWorlds& on, int64_t step, int64_t steps, Launch&& launch) {
   while (steps > 0) {

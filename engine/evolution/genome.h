@@ -21,7 +21,7 @@ HEDON_FN void init_genome(const SpeciesLayout& layout, const RandomStream& rando
   }
 }
 
-/// Which birth of its window a birth is: all that frozen noise depends on, beside the seed and the gene.
+/// The number of a birth within its window. Frozen noise depends only on this, the seed and the gene.
 struct BirthNumber {
   uint32_t births;  ///< of this window, if its genomes are drawn at its end; else of the window before
   uint32_t index;   ///< from 0, in the order of birth

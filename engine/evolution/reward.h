@@ -1,4 +1,4 @@
-/// The inherited reward of one step: terms over channels. Knows no world.
+/// The inherited reward of one step: terms over channels. Independent of worlds.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace hedon {
 
-/// Drive: the distance of stores from their set points, in shares of their measures, held(s) and measure(s) for store
-/// `s`. Keramati and Gutkin (2014).
+/// Drive: the distance of the stores from their set points, relative to their measures. held(s) and measure(s) give the
+/// amount and the measure of store `s`. Source: Keramati and Gutkin (2014).
 template <class Held, class Measure>
 HEDON_FN double drive(const SpeciesLayout& layout, const float* genome, Held&& held, Measure&& measure) {
   double squared = 0.0, only = 0.0;
@@ -26,15 +26,15 @@ HEDON_FN double drive(const SpeciesLayout& layout, const float* genome, Held&& h
 
 HEDON_FN double logistic(double x) { return 1.0 / (1.0 + exp_double(-x)); }
 
-/// A setting, multiplied by ten to the power of a gene where there is one.
+/// A setting, multiplied by ten to the power of its gene, if it has one.
 HEDON_FN double by_gene(float setting, int32_t gene, const float* genome) {
   return gene < 0 ? setting : setting * exp_double(genome[gene] * LOG_10);
 }
 
-/// Whether weights of a family depend on a gate: those from `above` on do.
+/// Whether the weights of a family depend on a gate, as in the families from `above` on.
 constexpr bool has_gate(RewardFamily family) { return family >= RewardFamily::above; }
 
-/// By how much a gate is above the threshold of a family, in units of its width.
+/// The distance of a gate above the threshold of a family, in units of its width.
 HEDON_FN double beyond(const RewardConfig& config, const SpeciesLayout& layout, const float* genome, double gate) {
   return (gate - by_gene(config.threshold, layout.gene_of(GenomeFamily::threshold), genome)) /
          by_gene(config.threshold_width, layout.gene_of(GenomeFamily::threshold_width), genome);
@@ -66,7 +66,7 @@ HEDON_FN float weight_of(const RewardConfig& config, const SpeciesLayout& layout
   return w;
 }
 
-/// r = Σ coef · weight · channel over the terms. `read(channel)` is a channel's number.
+/// r = Σ coef · weight · channel over the terms. `read(channel)` gives a channel's value.
 template <class Read>
 HEDON_FN float reward(const RewardConfig& config, const SpeciesLayout& layout, const float* genome, double gate,
                       Read&& read) {

@@ -12,7 +12,7 @@ namespace {
 template <class Shape>
 HEDON_FN int64_t multiply_adds(int64_t rounds, float* result) {
   constexpr int chains = Shape::chains;
-  // All different: the compiler would compute equal lanes only once.
+  // All different, since the compiler would compute equal lanes only once.
   alignas(64) float first[chains * 16];
   for (int i = 0; i < chains * 16; ++i) first[i] = static_cast<float>(i) * *result;
   Lanes total[chains];

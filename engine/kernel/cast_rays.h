@@ -49,8 +49,8 @@ HEDON_INLINE void cast_at_circles(const RayTargets& targets, const RayFan& fan, 
   }
 }
 
-/// As bits: which of the 16 segments from `first` on an arc may hit. It surely misses a segment that lies behind one of
-/// its edges, or whose whole line is out of reach.
+/// A bit mask of the 16 segments from `first` on that an arc may hit. It cannot hit a segment that is behind one of its
+/// edges, or whose whole line is out of reach.
 HEDON_INLINE uint32_t segments_ahead(const RayTargets& targets, const RayFan& fan, const Arc& arc, int32_t first) {
   const Lanes center_x = broadcast(fan.x), center_y = broadcast(fan.y), zero = broadcast(0.0f);
   const Lanes reach = broadcast(fan.start + fan.length);

@@ -22,8 +22,9 @@ namespace {
 constexpr int MAX_KERNELS = 3;
 
 #if defined(__x86_64__)
-/// What the processor can compute with, if the system keeps its registers, too. Not `__builtin_cpu_supports`: not every
-/// compiler's library has what that calls. Source: Intel's manual, volume 1, sections 14.3 and 15.2.
+/// The instruction sets of the processor whose registers the system saves. This is not `__builtin_cpu_supports`,
+/// because some compilers' libraries lack the function that it calls. Source: Intel's manual, volume 1, sections 14.3
+/// and 15.2.
 struct Processor {
   bool avx2 = false;    ///< with fused multiply-add
   bool avx512 = false;  ///< F, DQ, BW, VL
@@ -31,7 +32,7 @@ struct Processor {
   Processor() {
     constexpr unsigned FMA = 1u << 12, OSXSAVE = 1u << 27, AVX2 = 1u << 5;
     constexpr unsigned AVX512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31;
-    constexpr unsigned YMM = 0x06, ZMM = 0xe6;  // bits of the registers that the system keeps
+    constexpr unsigned YMM = 0x06, ZMM = 0xe6;  // bits of the registers that the system saves
     unsigned a, b, c, d, kept, upper;
     if (__get_cpuid(1, &a, &b, &c, &d) == 0 || (c & OSXSAVE) == 0 || (c & FMA) == 0) return;
     asm volatile("xgetbv" : "=a"(kept), "=d"(upper) : "c"(0));

@@ -1,7 +1,7 @@
 /// The hot kernels of one instruction set, in a table for each purpose; one set is chosen when a simulation is made.
 ///
-/// The units that fill a table are compiled for their instruction set. So they define nothing that the linker could use
-/// in other code: everything in them is in an anonymous namespace, and they include no standard containers.
+/// The units that fill a table are compiled for their instruction set. So they must not define anything that the linker
+/// could use in other code: everything in them is in an anonymous namespace, and they include no standard containers.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 namespace hedon {
 
 /// Tiles of the matrix products, which fit this instruction set's 32 registers of 4 floats: 16 sums, 4 factors from
-/// each side. They were chosen by that count, not by times: no such processor was at hand.
+/// each side. They were chosen by this count, not by measurement, for lack of such a processor.
 struct NeonShape {
   static constexpr int rows = 4;           ///< rows of a tile
   static constexpr int lanes = 1;          ///< vectors of 16 columns in a tile

@@ -88,7 +88,7 @@ HEDON_INLINE void fold_bias(const NetworkShape& shape, const float* b1, const Ma
   Lanes bias[WIDTH], row[WIDTH];
   PlainRows{b1}.read<WIDTH>(0, 0, bias);
   const ObservationShape& sizes = shape.observation;
-  // Ray by ray, not row by row: the rounding of the sum does not depend on the order of rows in memory.
+  // Ray by ray, not row by row, so that the rounding of the sum does not depend on the order of rows in memory.
   for (int32_t r = 0; r < sizes.rays; ++r) {
     for (int32_t type = 0; type < sizes.types; ++type) {
       w1.template read<WIDTH>(sizes.ray_entry(r, type), 0, row);

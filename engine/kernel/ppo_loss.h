@@ -28,7 +28,7 @@ struct LossSums {
 /// Data that all samples of a minibatch share.
 struct LossConstants {
   Lanes sd_inverse[ACTIONS];
-  Lanes log_scale;  ///< sum of log-sd plus log(2π): the log-probability subtracts it, besides the squares
+  Lanes log_scale;  ///< sum of log-sd plus log(2π), which the log-probability subtracts in addition to the squares
   Lanes clip_low, clip_high;
   Lanes value_coef;
   Lanes target_mean;

@@ -48,7 +48,7 @@ struct RayFan {
   float edge;     ///< 1: a circle is hit if its far edge is past the start of the ray; -1: only if its near edge is
   float nearest;  ///< distance from the center at which segments begin to be hit: 0, or `start` [u]
   Arc arc[RAY_ARCS];
-  Rows next;  ///< data that is read after the rays are cast: prefetched meanwhile, one row per circle
+  Rows next;  ///< data that is read after the rays are cast, prefetched meanwhile, one row per circle
 
   HEDON_INLINE int32_t arcs() const { return (rays + 15) / 16; }
 };
@@ -60,7 +60,7 @@ struct RayCandidates {
 };
 
 struct RayKernels {
-  /// Appends those of the circles [first, last) that each arc may touch, in order. No ray can hit those left out.
+  /// Appends the circles of [first, last) that each arc may touch, in order. No ray can hit the others.
   void (*cull_circles)(const RayTargets& targets, const RayFan& fan, int32_t first, int32_t last,
                        RayCandidates& candidates);
 

@@ -66,7 +66,7 @@ HEDON_INLINE bool any(LaneMask m) {
   return vmaxvq_u32(vorrq_u32(vorrq_u32(m.part[0], m.part[1]), vorrq_u32(m.part[2], m.part[3]))) != 0;
 }
 HEDON_INLINE uint32_t to_bits(LaneMask m) {
-  // A byte for each lane, of which one bit is left: its place in its half. Then the bits of a half are added up.
+  // Keeps one bit in the byte of each lane, at the lane's place in its half. Then the bits of a half are added up.
   const uint16x8_t low = vcombine_u16(vmovn_u32(m.part[0]), vmovn_u32(m.part[1]));
   const uint16x8_t high = vcombine_u16(vmovn_u32(m.part[2]), vmovn_u32(m.part[3]));
   const uint8x16_t place = vreinterpretq_u8_u64(vdupq_n_u64(0x8040201008040201));
@@ -76,7 +76,7 @@ HEDON_INLINE uint32_t to_bits(LaneMask m) {
 HEDON_INLINE Lanes select(LaneMask m, Lanes yes, Lanes no) {
   return each_part([&](int i) HEDON_INLINED { return vbslq_f32(m.part[i], yes.part[i], no.part[i]); });
 }
-// Not NEON's own minimum and maximum, which give NaN where either is NaN.
+// Not NEON's own minimum and maximum, which give NaN if either is NaN.
 HEDON_INLINE Lanes smaller(Lanes a, Lanes b) { return select(a < b, a, b); }
 HEDON_INLINE Lanes larger(Lanes a, Lanes b) { return select(b < a, a, b); }
 

@@ -52,7 +52,7 @@ HEDON_INLINE Lanes operator/(Lanes a, Lanes b) {
   return each_part([&](int i) HEDON_INLINED { return a.part[i] / b.part[i]; });
 }
 #if defined(__wasm_relaxed_simd__)
-/// WebAssembly's own, which fuses where the processor can: then the bits are those of AVX2 and AVX-512.
+/// WebAssembly's own, which fuses if the processor can, in which case the bits match AVX2 and AVX-512.
 HEDON_INLINE Lanes multiply_add(Lanes a, Lanes b, Lanes c) {
   return each_part([&](int i)
                        HEDON_INLINED { return __builtin_wasm_relaxed_madd_f32x4(a.part[i], b.part[i], c.part[i]); });

@@ -24,7 +24,7 @@ HEDON_FN Spread spread_of(const float* values, int32_t count) {
   return {mean, sqrt(squares / count)};
 }
 
-/// What rewards are multiplied by.
+/// The factor on rewards.
 HEDON_FN float reward_factor(const LearningConfig& config, const float* reward, int32_t count) {
   if (config.reward_scaling == LearningRewardScaling::none) return 1.0f;
   const double deviation = spread_of(reward, count).deviation;

@@ -65,7 +65,7 @@ HEDON_FN void init_network(const NetworkShape& shape, const RandomStream& stream
   const float first = 1.0f / sqrtf(static_cast<float>(inputs));
   const float later = 1.0f / sqrtf(static_cast<float>(HIDDEN));
   float* const w1 = params + shape.w1();
-  // Ray by ray, not row by row: the draw of an entry does not depend on the place of its row in memory.
+  // Ray by ray, not row by row, so that the draw of an entry does not depend on the place of its row in memory.
   for (int32_t r = 0; r < sizes.rays; ++r) {
     for (int32_t type = 0; type < sizes.types; ++type) {
       draws.uniform(first, HIDDEN, w1 + sizes.ray_entry(r, type) * HIDDEN);

@@ -30,7 +30,7 @@ struct NetworkShape {
   }  ///< of all before b2: rows of 64 at the same places as in the parameters; b1 is not used
 };
 
-/// What an agent acts with: its parameters, and the data that `NetworkKernels::pack_weights` computes from them.
+/// The network with which an agent acts: its parameters, and the data that `NetworkKernels::pack_weights` computes.
 struct ActingNetwork {
   const float* params;
   float* folded_bias;  ///< (64) b1, less the -1 that all ray channels read: folded_bias[j] = b1[j] - sum of w1[row, j]

@@ -25,7 +25,7 @@ static_assert(sizeof(PackedObservation) == 192);
 
 inline constexpr int MAX_EXTRA_DENSE = 14;
 
-/// What a wide observation has more: a fourth cache line, directly after the packed observation.
+/// The additional part of a wide observation: a fourth cache line, directly after the packed observation.
 struct alignas(64) ObservationExtra {
   uint64_t touch;                ///< bits from 64 on
   float dense[MAX_EXTRA_DENSE];  ///< entries from MAX_DENSE on
@@ -47,7 +47,7 @@ HEDON_INLINE ObservationExtra& extra_of(PackedObservation& packed) {
   return *reinterpret_cast<ObservationExtra*>(&packed + 1);
 }
 
-/// Sets dense entry `d`; entries from MAX_DENSE on are there only in a wide layout.
+/// Sets dense entry `d`; entries from MAX_DENSE on exist only in a wide layout.
 HEDON_INLINE void set_dense(PackedObservation& packed, int32_t d, float value) {
   if (d < MAX_DENSE)
     packed.dense[d] = value;

@@ -1,4 +1,4 @@
-/// What one learner has lived through in a window, and the order of its minibatches.
+/// The experience of one learner in a window, and the order of its minibatches.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ HEDON_FN void permute(const RandomStream& stream, int32_t count, uint32_t& index
   }
 }
 
-/// Sorts the steps of each minibatch of a permutation by time. The minibatch of a step stays random. But observations
-/// change little from one step to the next, which makes the kernels faster.
+/// Sorts the steps of each minibatch of a permutation by time. The minibatch of a step stays random, but neighboring
+/// steps have similar observations, which makes the kernels faster.
 /// owner, end   (count) scratch
 HEDON_FN void sort_minibatches(int32_t count, int32_t minibatch_size, int32_t* owner, int32_t* end, int32_t* order) {
   for (int32_t first = 0, batch = 0; first < count; first += minibatch_size, ++batch) {

@@ -1,10 +1,9 @@
 /// The contact solver of the paper's released code: biased impulses in Jacobi passes, including its faults.
 ///
 /// In a pass, every contact reads the velocities at the start of the pass. Then the changes from a body's contacts are
-/// added to it in the order of contacts, so that the sum depends only on the bodies of the island. Crowds
-/// separate more slowly than with sequential impulses and bodies overlap by several units, which decides which agent
-/// eats. Impulses between bodies are equal and opposite, so pairs of bodies keep their total momentum, up to float
-/// rounding.
+/// added to it in the order of contacts, so that the sum depends only on the bodies of the island. Crowds separate more
+/// slowly than with sequential impulses and bodies overlap by several units, which decides which agent eats. Impulses
+/// between bodies are equal and opposite, so pairs of bodies keep their total momentum, up to float rounding.
 #pragma once
 
 #include <cfloat>

@@ -149,7 +149,7 @@ struct PhysicsCapacity {
                mixed, own)
 };
 
-/// Capacities for an arena. Discs that do not overlap can form only so many pairs: within a skin of 20 u (twice the
+/// Capacities for an arena. Discs that do not overlap form a limited number of pairs: within a skin of 20 u (twice the
 /// radius) of a body with radius 10 u there are at most 22 others, and half of them count here; 16 leaves room for
 /// overlap. Around a circle there are fewer than 24 bodies. In a convex corner, a body is near its chords and two
 /// walls. With the solver jacobi, a crowd can burst: for one substep a body moves at up to 250 u/s, which needs a skin

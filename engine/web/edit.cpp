@@ -8,7 +8,7 @@ namespace {
 
 const char* const NO_PLACE = "there is no room: something is in the way there, or it is not within the walls";
 
-/// The item nearest to a place among those within its own reach of it; -1 for none.
+/// The item nearest to a place, among items whose reach includes the place; -1 for none.
 class Nearest {
  public:
   explicit Nearest(Vec2 position) : position_(position) {}
@@ -31,7 +31,7 @@ class Nearest {
 std::string add_agent(World& world, int32_t species, Vec2 position) {
   const SpeciesConfig& config = world.shape->of[species].config;
   if (inherits_late(world))
-    return "nobody can be added where children inherit at the end of a window, as with the fidelity \"released\"";
+    return "agents cannot be added if children inherit at the end of a window, as with the fidelity \"released\"";
   if (world.state.free_count[species] == 0)
     return "there is no room: population.capacity is " + std::to_string(world.shape->of[species].capacity());
   if (!can_place(world, position, founder_radius(world, species, world.head().next_agent_id))) return NO_PLACE;

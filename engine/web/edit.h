@@ -1,8 +1,8 @@
-/// Changes of a world by hand, between two steps: somebody or something is put into it, or taken out of it.
+/// Edits of a world by hand, between two steps: adding and removing agents and foods.
 ///
 /// An added agent is like a founder: it has a new network, a genome drawn for its id, and a founder's energy, which the
-/// ledger counts as such. An agent that is taken out counts as dead of age and energy in records. The world then goes
-/// on by its own rules, but it is no longer what its config and seed give.
+/// ledger counts as such. In records, a removed agent counts as dead of age and energy. The world then continues
+/// under its own rules, but can no longer be reproduced from its config and seed.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace hedon {
 
-/// Adds a thing of a type, counted as the senses do: first the species, then the kinds of food. Returns "", or why
-/// there is no room for it; then nothing has changed.
+/// Adds an agent or a food of a type, numbered as in the senses: first the species, then the kinds of food. Returns "",
+/// or why there is no room for it; then nothing has changed.
 std::string add_thing(World& world, int32_t type, Vec2 position);
 
-/// Takes out the agent whose body is at a place, or else the food there, with `slack` beyond their rims. Returns "", or
-/// what is wrong.
+/// Removes the agent whose body is at a place, or else the food there, with a tolerance of `slack` beyond their rims.
+/// Returns "", or what is wrong.
 std::string remove_thing(World& world, Vec2 position, float slack);
 
 }  // namespace hedon

@@ -14,7 +14,7 @@ struct IsFixedList : std::false_type {};
 template <class T, int N>
 struct IsFixedList<FixedList<T, N>> : std::true_type {};
 
-/// The settings that nobody has read yet, and the first thing that was wrong with one.
+/// The settings that have not been read yet, and the first error.
 class Lines {
  public:
   void add(const std::string& path, const std::string& value) {
@@ -34,7 +34,7 @@ class Lines {
     return value;
   }
 
-  /// Whether any setting that is left begins so.
+  /// Whether the path of any remaining setting begins like this.
   bool any(const std::string& prefix) const {
     const auto next = values_.lower_bound(prefix);
     return next != values_.end() && next->first.compare(0, prefix.size(), prefix) == 0;

@@ -1,8 +1,8 @@
-/// What a world in a web page is made from, as text: one setting per line, `path=value`.
+/// The input for a world in a web page, as text: one setting per line, `path=value`.
 ///
-/// Paths are those of the structs, as in `food[0].energy`. Besides the config: `seed=1`, `outer_walls=20`, and one
-/// `wall=ax,ay,bx,by` for each wall. A missing, repeated or unknown path is an error, and so is a value that is no
-/// number or no known name.
+/// Paths follow the structs, as in `food[0].energy`. In addition to the config there are `seed=1`, `outer_walls=20`,
+/// and one `wall=ax,ay,bx,by` for each wall. A missing, repeated or unknown path is an error, and so is a value that is
+/// neither a number nor a known name.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct WorldInput {
   uint64_t seed;
 };
 
-/// Reads `text` into `out`; returns "", or the first thing that is wrong. Does not check ranges: see `check_config`.
+/// Reads `text` into `out`; returns "", or the first error. Does not check ranges: see `check_config`.
 std::string read_input(const std::string& text, WorldInput& out);
 
 }  // namespace hedon

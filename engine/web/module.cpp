@@ -1,8 +1,9 @@
-/// The engine's face to a web page: plain functions that WebAssembly exports. One world at a time.
+/// The engine's interface for a web page: plain functions exported to WebAssembly, for one world at a time.
 ///
 /// Call them in this order: `hedon_text` gives room for the text of `WorldInput`; `hedon_read` reads and checks it;
-/// `hedon_bytes_needed` says what the world would take; `hedon_make` makes it. Then `hedon_run`, `hedon_learn` and the
-/// views, as often as you like. A function that can fail returns 0 for success; `hedon_message` says what was wrong.
+/// `hedon_bytes_needed` returns the memory that the world would take; `hedon_make` makes it. Then call `hedon_run`,
+/// `hedon_learn` and the views as often as you like. A function that can fail returns 0 for success; `hedon_message`
+/// then explains the failure.
 ///
 /// A world with several threads needs as many seats before it is made, each with a worker that serves there: see
 /// `base/platform_web.cpp`.
@@ -28,7 +29,7 @@
 namespace hedon {
 namespace {
 
-/// Where an array lies and what it holds; the page reads it as six 32-bit integers.
+/// The address and type of an array, which the page reads as six 32-bit integers.
 struct View {
   int32_t address;
   int32_t count;   ///< numbers
@@ -38,25 +39,25 @@ struct View {
   int32_t sign;    ///< 1 for numbers that can be negative
 };
 
-/// What the chosen agent senses and how its network answers.
+/// What the chosen agent senses and its network's output.
 struct AgentProbe {
   PackedObservation observation;
   ObservationExtra extra;        ///< of a wide observation
   float output[16];              ///< mean of the two actions, then the value
-  float observed[MAX_CHANNELS];  ///< what it observes beside rays and touch, in the order of its layout
+  float observed[MAX_CHANNELS];  ///< its observations other than rays and touch, in the order of its layout
 };
 
-constexpr size_t SPARE = size_t{4} << 20;  ///< bytes that a world needs besides its own, with room to spare
+constexpr size_t SPARE = size_t{4} << 20;  ///< bytes needed in addition to a world's own, with a margin
 
 std::string text, message, path;
-WorldInput input, made;  ///< what was read last, and what the world was made from
+WorldInput input, made;  ///< the input read last, and the one that the world was made from
 std::unique_ptr<Simulation> simulation;
 std::vector<float> scratch;
 Pace pace;
 int32_t learned;  ///< learners of the present window that have learned, while the window is being learned
 bool learning;
 int32_t learners;
-bool edited;                                                  ///< whether the world has been changed by hand
+bool edited;                                                  ///< whether the world has been edited by hand
 std::unique_ptr<char, decltype(&free)> kept(nullptr, &free);  ///< a copy of the world's memory; null for none
 bool kept_edited;
 View view;
@@ -96,7 +97,7 @@ int report_fault() {
   return fail(std::string(known.name) + ": " + known.sentence + " " + known.remedy);
 }
 
-/// Between two windows a world can be changed and kept; while its agents learn it cannot.
+/// Fails while agents learn: a world can be edited and kept only between two windows.
 int need_rest() { return learning ? fail("the agents are learning: wait until the window has ended") : 0; }
 
 int change(const std::string& refused) {
@@ -105,7 +106,7 @@ int change(const std::string& refused) {
   return report_fault();
 }
 
-/// Makes the world of an input, at its first step; the world before is gone.
+/// Makes the world of an input, at its first step; the previous world is gone.
 void make_world(const WorldInput& from, int32_t threads) {
   simulation.reset();
   made = from;
@@ -131,7 +132,7 @@ void show(const T* first, int64_t count, int64_t stride) {
           std::is_signed_v<T> ? 1 : 0};
 }
 
-/// Looks for the array `path` of the state, or the column `array.column` of an array of structs.
+/// Looks up the array `path` of the state, or the column `array.column` of an array of structs.
 bool find_view() {
   bool found = false;
   for_each_array(world().state, "", [&]<class T>(const std::string& name, Array<T>& array) {
@@ -155,13 +156,13 @@ bool find_view() {
 
 }  // namespace
 
-/// Room for `bytes` bytes of input.
+/// Returns a buffer for `bytes` bytes of input.
 HEDON_EXPORT(hedon_text) char* hedon_text(int32_t bytes) {
   text.assign(static_cast<size_t>(bytes), '\0');
   return text.data();
 }
 
-/// The last message, which ends with a zero.
+/// The last message, zero-terminated.
 HEDON_EXPORT(hedon_message) const char* hedon_message() { return message.c_str(); }
 
 /// Reads and checks the input.
@@ -177,15 +178,16 @@ HEDON_EXPORT(hedon_read) int hedon_read() {
   return company.empty() ? 0 : fail(company);
 }
 
-/// Bytes that the world of the input needs; a page refuses what it cannot have before it reserves it.
+/// Bytes that the world of the input needs, so that a page can refuse a world before reserving memory for it.
 HEDON_EXPORT(hedon_bytes_needed) double hedon_bytes_needed(int32_t threads) { return bytes_needed(input, threads); }
 
-/// Makes the world of the input, with that many threads, which change no result; the world before is gone.
+/// Makes the world of the input, with this number of threads, which does not affect results. The previous world is
+/// gone.
 HEDON_EXPORT(hedon_make) int hedon_make(int32_t threads) {
   simulation.reset();
   learning = edited = false;
   kept.reset();
-  if (threads > available_processors()) return fail("there are not as many threads as the world is to have");
+  if (threads > available_processors()) return fail("there are fewer threads than the world is to have");
   const auto bytes = static_cast<size_t>(hedon_bytes_needed(threads)) + SPARE;
   void* room = reserve_pages(bytes);
   if (room == nullptr)
@@ -196,8 +198,8 @@ HEDON_EXPORT(hedon_make) int hedon_make(int32_t threads) {
   return report_fault();
 }
 
-/// Lets the world go on with the settings of the input, as `hedon branch` does. The copy that was kept is forgotten. If
-/// the state does not fit the settings, the world stays as it is.
+/// Continues the world with the settings of the input, as `hedon branch` does. The kept copy is discarded. If the state
+/// does not fit the settings, the world stays as it is.
 HEDON_EXPORT(hedon_change) int hedon_change() {
   if (need_rest() != 0) return 1;
   const int32_t threads = simulation->pool().size();
@@ -238,7 +240,7 @@ HEDON_EXPORT(hedon_run) int32_t hedon_run(int32_t steps) {
 /// Whether a window has ended whose learning is not done: 1 if `hedon_learn` must be called before the next step.
 HEDON_EXPORT(hedon_must_learn) int hedon_must_learn() { return learning ? 1 : 0; }
 
-/// Lets the next `count` learners learn; returns how many are left.
+/// Trains the next `count` learners; returns how many are left.
 HEDON_EXPORT(hedon_learn) int32_t hedon_learn(int32_t count) {
   if (!learning) return 0;
   together([&](Team& team) {
@@ -255,20 +257,20 @@ HEDON_EXPORT(hedon_learn) int32_t hedon_learn(int32_t count) {
 /// Status of the world: 0 while nothing is wrong.
 HEDON_EXPORT(hedon_fault) int hedon_fault() { return report_fault(); }
 
-/// Adds a thing by hand: see `add_thing`.
+/// Adds an agent or a food by hand: see `add_thing`.
 HEDON_EXPORT(hedon_add) int hedon_add(int32_t type, float x, float y) {
   return need_rest() != 0 ? 1 : change(add_thing(world(), type, {x, y}));
 }
 
-/// Takes out by hand what is at a place: see `remove_thing`.
+/// Removes by hand what is at a place: see `remove_thing`.
 HEDON_EXPORT(hedon_remove) int hedon_remove(float x, float y, float slack) {
   return need_rest() != 0 ? 1 : change(remove_thing(world(), {x, y}, slack));
 }
 
-/// Whether the world has been changed by hand: 1 if no config and seed give it.
+/// Whether the world has been edited by hand: 1 if it can no longer be reproduced from its config and seed.
 HEDON_EXPORT(hedon_edited) int hedon_edited() { return edited ? 1 : 0; }
 
-/// Keeps the world as it is now, instead of the one kept before.
+/// Keeps a copy of the world as it is now, which replaces the previous copy.
 HEDON_EXPORT(hedon_keep) int hedon_keep() {
   if (need_rest() != 0) return 1;
   const size_t bytes = static_cast<size_t>(simulation->bytes_per_world());
@@ -279,7 +281,7 @@ HEDON_EXPORT(hedon_keep) int hedon_keep() {
   return 0;
 }
 
-/// Makes the world as it was when it was kept: it goes on with the same bits.
+/// Restores the kept copy of the world, which continues with the same bits.
 HEDON_EXPORT(hedon_return) int hedon_return() {
   if (!kept) return fail("no world was kept");
   memcpy(simulation->memory(0), kept.get(), static_cast<size_t>(simulation->bytes_per_world()));
@@ -288,22 +290,22 @@ HEDON_EXPORT(hedon_return) int hedon_return() {
   return report_fault();
 }
 
-/// The digest that `hedon run` gives for the same state. Not while a window is being learned.
+/// The digest that `hedon run` gives for the same state. Do not call it while a window is being learned.
 HEDON_EXPORT(hedon_digest) uint64_t hedon_digest() { return simulation->digest(0); }
 
-/// Room for the name of an array, of `bytes` bytes.
+/// Returns a buffer of `bytes` bytes for the name of an array.
 HEDON_EXPORT(hedon_path) char* hedon_path(int32_t bytes) {
   path.assign(static_cast<size_t>(bytes), '\0');
   return path.data();
 }
 
-/// Where the array named by `hedon_path` lies; null if there is none. Valid until the next world is made.
+/// The location of the array named by `hedon_path`; null if there is none. Valid until the next world is made.
 HEDON_EXPORT(hedon_view) const View* hedon_view() { return find_view() ? &view : nullptr; }
 
 /// Index of the first food of a kind among the foods; for the number of kinds, the number of foods.
 HEDON_EXPORT(hedon_food_start) int32_t hedon_food_start(int32_t kind) { return simulation->shape().food_offset[kind]; }
 
-/// Whether this machine fuses multiply-adds: 1 for the bits of AVX2 and AVX-512. `near` must be 1 + 2^-12.
+/// Whether this machine fuses multiply-adds: 1 if it gives the bits of AVX2 and AVX-512. `near` must be 1 + 2^-12.
 HEDON_EXPORT(hedon_fuses) int hedon_fuses(float near) {
   // The square has a last bit, 2^-24, which only a fused multiply-add keeps.
   alignas(64) float rest[16];
@@ -311,15 +313,15 @@ HEDON_EXPORT(hedon_fuses) int hedon_fuses(float near) {
   return rest[0] != 0.0f ? 1 : 0;
 }
 
-/// Forgets the deaths that wait in the views `death_log.…`; call it when they are read.
+/// Clears the waiting deaths in the views `death_log.…`; call it after reading them.
 HEDON_EXPORT(hedon_take_deaths) void hedon_take_deaths() {
   world().head().death_log_count = 0;
   world().head().death_log_lost = 0;
 }
 
-/// What the agent in `slot` senses now and how its network answers, zeros if its species has none; changes nothing of
-/// the world's state. Returns where its parts are: readings and types of rays, the network's answer, what else it
-/// observes.
+/// What the agent in `slot` senses now and its network's output, zeros if its species has none. Does not change the
+/// world's state. Returns the addresses of the parts: readings and types of rays, the network's output, other
+/// observations.
 HEDON_EXPORT(hedon_probe) const void* const* hedon_probe(int32_t slot) {
   note_start(world(), slot);
   observe(world(), slot, 0, probe.observation);

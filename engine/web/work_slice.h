@@ -1,4 +1,4 @@
-/// A team that does a few of many pieces at a time, so that a page can draw in between.
+/// A team that does a few of many pieces of work at a time, so that a page can draw in between.
 #pragma once
 
 #include <algorithm>

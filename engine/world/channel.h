@@ -47,8 +47,7 @@ HEDON_FN float smell_of(const World& world, int32_t slot, int32_t channel) {
   return sum / static_cast<float>(noses);
 }
 
-/// How many touch sectors of the agent in `slot` felt something in its last step, in the touch channels
-/// [first, last).
+/// Number of touch sectors of the agent in `slot` that felt something in its last step, in the channels [first, last).
 HEDON_FN int32_t felt_sectors(const World& world, int32_t slot, int32_t first, int32_t last) {
   const int32_t sectors = world.species(slot).config.sensor.touch_sectors;
   const auto felt = [&](int32_t bit) {

@@ -69,11 +69,11 @@ class Simulation:
         """Full observations of the living of a species: (living, size)."""
 
     def save(self, world: int) -> dict[str, numpy.typing.NDArray[Any]]:
-        """Copies of everything that decides a world's future, as arrays."""
+        """Copies of everything that determines a world's future, as arrays."""
 
     def save_to(self, world: int, begin: Callable[[str, str, list[int]], object], piece: Callable[[bytes], object]) -> None:
         """
-        The same in pieces, for one who has no memory for copies: begin(name, type, shape) for each array in turn, then piece(bytes) until all its bytes are given.
+        The same in pieces, without memory for copies: begin(name, type, shape) for each array in turn, then piece(bytes) until all its bytes are passed.
         """
 
     def restore(self, world: int, arrays: dict[str, numpy.typing.NDArray[Any]]) -> None:
@@ -83,18 +83,18 @@ class Simulation:
 
     def pack(self, head: bytes) -> bytes:
         """
-        All worlds with their seeds, and a text of the caller's, as one string of bytes.
+        All worlds with their seeds, and a text of the caller's, as one byte string.
         """
 
     @staticmethod
     def packed_head(packed: bytes) -> bytes:
         """
-        The caller's text in what `pack` gave. ValueError: it is damaged, or something else.
+        The caller's text in the result of `pack`. ValueError: it is damaged, or not a result of `pack`.
         """
 
     def unpack(self, packed: bytes) -> None:
         """
-        Replaces all worlds, and their seeds, by those in what `pack` gave, in which `packed_head` has found no damage. ValueError: what is wrong; all worlds are then unchanged.
+        Replaces all worlds, and their seeds, by the ones in the result of `pack`, in which `packed_head` has found no damage. ValueError: what is wrong; all worlds are then unchanged.
         """
 
     def reset(self, world: int, seed: int) -> None:
@@ -104,30 +104,30 @@ class Simulation:
 
     def set_rule(self, species: int, use: str, address: int, name: str) -> None:
         """
-        Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double *records, double *answers). Faults of the rule tell its name.
+        Gives a species the function for its reward, hazard or birth, by its address: void(int64 count, double *records, double *answers). Messages about faults of the rule contain its name.
         """
 
     def wrong_action(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = 'logit') -> int:
         """
-        Which number of a living agent cannot be its action, as `set_actions` would say; nobody is told anything.
+        The index of an invalid action of a living agent, as from `set_actions`, or -1; sets no action.
         """
 
     def set_actions(self, species: int, actions: numpy.typing.NDArray[numpy.float32], form: str = 'logit') -> int:
         """
-        Tells the agents of an external species what to do from now on: (worlds, slots, 2), as `unit`, `force` or `logit`. Returns -1, or which number of a living agent is out of bounds; then nobody is told anything.
+        Sets the actions of the agents of an external species from now on: (worlds, slots, 2), as `unit`, `force` or `logit`. Returns -1, or the index of a living agent's action out of bounds; then no action is set.
         """
 
     def read_observations(self, species: int, observation: numpy.typing.NDArray[numpy.float32], reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> int:
         """
-        Writes what the agents of an external species sense, what they earned in the last step, and their ids into arrays of (worlds, slots, …). Returns in how many slots another agent, or none, is than `agent_id` had.
+        Writes the observations of an external species' agents, their rewards in the last step, and their ids into arrays of (worlds, slots, …). Returns in how many slots the agent differs from `agent_id`.
         """
 
     def read_rewards(self, species: int, reward: numpy.typing.NDArray[numpy.float32], agent_id: numpy.typing.NDArray[numpy.int32]) -> None:
-        """The same without what they sense."""
+        """The same without observations."""
 
     def meals(self, species: int) -> numpy.typing.NDArray[numpy.int64]:
         """
-        What the agents of a species have eaten since the worlds began, foods by kind and then agents by species: (worlds, meals).
+        Numbers of meals of a species since the worlds began, foods by kind and then agents by species: (worlds, meals).
         """
 
     def set_scene(self, world: int, x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_x: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_y: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], food_kind: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
@@ -162,7 +162,7 @@ class Simulation:
     @property
     def device_seconds(self) -> dict:
         """
-        Seconds that devices spent in each kernel, and copying; zeros where there is no device.
+        Seconds that devices spent in each kernel, and copying; zeros without devices.
         """
 
     @property
@@ -173,7 +173,7 @@ class Simulation:
 
     @property
     def turn(self) -> int:
-        """That `step_batch` goes on from."""
+        """The turn of the state from which `step_batch` continues."""
 
     @turn.setter
     def turn(self, arg: int, /) -> None: ...
