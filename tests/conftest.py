@@ -33,6 +33,7 @@ LONGEST = (
     "test_cuda_run.py",
     "test_site.py",
     "test_classics.py",
+    "test_learner_study.py",
     "test_store.py",
     "test_damaged_file.py",
     "test_cuda_window.py",

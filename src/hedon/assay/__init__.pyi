@@ -4,5 +4,8 @@ from .contest import world_lines as world_lines
 from .frequency import AtShare as AtShare
 from .frequency import Frequency as Frequency
 from .frequency import estimate_frequency as estimate_frequency
+from .landscape import Spread as Spread
+from .landscape import spread_founders as spread_founders
+from .outcome import founder_outcomes as founder_outcomes
 from .report_frequency import draw_frequency as draw_frequency
 from .report_frequency import frequency_tables as frequency_tables

@@ -1,3 +1,4 @@
+from .founder import Founders as Founders
 from .founder import make_founders as make_founders
 from .labelled import to_xarray as to_xarray
 from .reader import LoadedRun as LoadedRun

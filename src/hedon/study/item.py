@@ -26,8 +26,8 @@ class Condition:
         overrides: Settings that it changes, as for `--set`.
         fidelity: Its own fidelity; None for the requested one.
         species: Species whose records are used, if there are several; the first by default.
-        founders: Genomes of founders, as for `hedon run --founders`: "food=5:0.1,food=0:0.9". By default they are drawn
-            from the config's distributions.
+        founders: Genomes of founders, as for `hedon run --founders`: "food=5:0.1,food=0:0.9"; or a function that makes
+            their table for the settings. By default they are drawn from the config's distributions.
     """
 
     label: str
@@ -35,7 +35,7 @@ class Condition:
     overrides: tuple[str, ...] = ()
     fidelity: str | None = None
     species: str = ""
-    founders: str = ""
+    founders: str | Callable[[Config], Founders] = ""
 
     def config(self, fidelity: str) -> Config:
         """The settings, given the requested fidelity."""
@@ -55,6 +55,8 @@ class Condition:
 @cache
 def _begin(condition: Condition, fidelity: str) -> tuple[Config, Founders | None]:
     config = load_config(condition.preset, fidelity, condition.overrides)
+    if callable(condition.founders):
+        return config, condition.founders(config)
     return config, read_founders(condition.founders, config) if condition.founders else None
 
 

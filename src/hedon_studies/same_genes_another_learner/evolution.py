@@ -35,17 +35,16 @@ WORLDS, LIVING = "worlds.csv", "living.parquet"
 Floats = NDArray[np.float64]
 
 
-def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
-    """The row of `worlds.csv` that describes one world.
+def measure(world: WorldRecord) -> dict[str, Any]:
+    """The measures of one world, as in `worlds.csv`.
 
     Returns:
         Arm and seed; demography, with the number alive averaged over all steps; for each weight the mean among the
-        living at the end and its score against neutral walks down the same pedigree; revision, start and digests.
+        living at the end and its score against neutral walks down the same pedigree.
     """
     rate = world.own.learning.learning_rate
     arm = next((name for name, value in ARMS.items() if math.isclose(value, rate, rel_tol=1e-6)), str(rate))
     drift = standard_drift(world)
-    manifest = run.manifest
     return {
         "arm": arm,
         "seed": world.seed,
@@ -62,6 +61,14 @@ def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
                 (f"{entry.weight}_score", entry.score),
             )
         },
+    }
+
+
+def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
+    """The row of `worlds.csv` that describes one world: its measures, and the revision, start and digests."""
+    manifest = run.manifest
+    return {
+        **measure(world),
         "backend": manifest.sessions[-1].backend,
         "hedon_version": manifest.hedon_version,
         "git_revision": manifest.git_revision,

@@ -19,8 +19,14 @@ def named_test(name: str, values: NDArray[np.float64]) -> dict[str, Any]:
         values: Value of each world or pair of worlds, shape (worlds,).
 
     Returns:
-        "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test) and "p_sign_flip".
+        "test", "worlds", "effect" (mean), "low" and "high" (95 %, Student's t), "p" (t test) and "p_sign_flip"; NaN
+        for what fewer than two values do not give.
     """
+    if len(values) < 2:
+        effect = float(values[0]) if len(values) else np.nan
+        return {"test": name, "worlds": len(values), "effect": effect} | dict.fromkeys(
+            ("low", "high", "p", "p_sign_flip"), np.nan
+        )
     result = stats.ttest_1samp(values, 0.0)
     bounds = result.confidence_interval(LEVEL)
     return {

@@ -1,0 +1,136 @@
+"""The study of same genes and another learner: its worlds, its answers, and its way from settings to a page."""
+
+import json
+import math
+import re
+from pathlib import Path
+
+import polars as pl
+import pytest
+from command import hedon
+
+from hedon.analysis import ResultTable
+from hedon.config import digest
+from hedon_studies.rule import NO, OPEN, YES
+from hedon_studies.same_genes_another_learner import evolution
+from hedon_studies.same_genes_another_learner.answer import EVOLUTION, LANDSCAPE, NONE, Expected, answer
+from hedon_studies.same_genes_another_learner.landscape import named_tests, read_arms
+from hedon_studies.same_genes_another_learner.study import (
+    EVOLUTION_SCALE,
+    LANDSCAPE_SCALE,
+    LANDSCAPES,
+    LEARNERS,
+    evolution_results,
+    landscape_results,
+)
+
+NAME = "same-genes-another-learner"
+RESULTS = Path(__file__).parents[3] / "docs" / "results"
+
+
+def committed(name: str) -> ResultTable:
+    results = landscape_results(read_arms(RESULTS / "learner"), complete=True)
+    return next(result for result in results if isinstance(result, ResultTable) and result.name == name)
+
+
+def test_its_worlds_are_the_committed_ones() -> None:
+    runs = pl.read_csv(RESULTS / "learner" / "runs.csv")
+    digests = {arm: digest(condition.config("corrected")) for arm, condition in LANDSCAPES.items()}
+    assert digests == dict(runs.select("arm", "config_digest").iter_rows())
+    assert set(runs["steps"]) == {LANDSCAPE_SCALE.steps}
+    assert set(runs["seeds"]) == {f"{LANDSCAPE_SCALE.seeds[0]}-{LANDSCAPE_SCALE.seeds[-1]}"}
+    worlds = pl.read_csv(RESULTS / "learner" / "evolution" / evolution.WORLDS)
+    evolving = {arm: digest(condition.config("corrected")) for arm, condition in LEARNERS.items()}
+    assert evolving == dict(worlds.select("arm", "config_digest").unique().iter_rows())
+    assert set(worlds["seed"]) <= set(EVOLUTION_SCALE.seeds)
+    assert set(worlds["steps"]) == {EVOLUTION_SCALE.steps}
+
+
+def test_each_expectation_is_of_a_test() -> None:
+    assert set(LANDSCAPE) == set(named_tests(read_arms(RESULTS / "learner"))["test"]) - {"hump, short"}
+    worlds = pl.read_csv(RESULTS / "learner" / "evolution" / evolution.WORLDS)
+    tests = next(
+        result.rows
+        for result in evolution_results(worlds, complete=False)
+        if isinstance(result, ResultTable) and result.name == "learner_evolution_verdict"
+    )
+    assert list(EVOLUTION) == tests["test"].to_list()
+    assert set(tests["answer"]) == {OPEN}, "not all worlds have run"
+
+
+def test_the_answers_from_the_committed_founders_are_those_of_the_page() -> None:
+    """Each row of the page: the test, what was expected, the effect, p, and whether it came out."""
+    table = committed("learner_landscape_verdict")
+    assert table.note.endswith("The landscapes repeat the pilots.")
+    names = {"short horizon": "short", "long horizon": "long", "normalized advantages": "normalized"}
+    text = (RESULTS / "learner.md").read_text(encoding="utf-8").replace("*", "")
+    part = text[text.index("| test | expected |") : text.index("Hump is the mean")]
+    answers = {}
+    for line in part.splitlines()[2:]:
+        if line.startswith("|"):
+            name, _, _, _, came = (cell.strip() for cell in line.strip("|").split("|"))
+            for long, short in names.items():
+                name = name.replace(long, short)
+            answers[name] = NONE if came == "\N{EN DASH}" else re.split(r"[:,]", came)[0]
+    assert answers == dict(table.rows.select("test", "answer").iter_rows())
+    assert list(answers.values()).count(YES) == 8
+
+
+def row(effect: float, p: float, p_holm: float | None = None) -> dict:
+    return {"test": "a", "effect": effect, "p": p, "p_holm": p_holm, "worlds": 30}
+
+
+@pytest.mark.parametrize(
+    ("expected", "test", "wanted"),
+    [
+        (None, row(1.0, 0.001), NONE),
+        (Expected(low=0), row(1.0, 0.001), YES),
+        (Expected(low=0), row(-1.0, 0.001), NO),
+        (Expected(low=0), row(1.0, 0.001, 0.2), OPEN),
+        (Expected(low=0), row(1.0, 0.2), OPEN),
+        (Expected(high=0), row(-1.0, 0.001, 0.01), YES),
+        (Expected(0.05, 0.16), row(0.2, 0.001), NO),
+        (Expected(-1, 1, shown=None), row(0.5, 0.9), YES),
+        (Expected(-1, 1, shown=None), row(2.0, 0.9), NO),
+        (Expected(shown=False), row(0.5, 0.9), YES),
+        (Expected(shown=False), row(0.5, 0.9, 0.01), NO),
+        (Expected(low=0, below="b"), row(1.0, 0.001), YES),
+        (Expected(low=0, below="b"), row(3.0, 0.001), NO),
+        (Expected(low=0), row(1.0, math.nan), OPEN),
+    ],
+)
+def test_an_answer_follows_from_the_expectation(expected: Expected | None, test: dict, wanted: str) -> None:
+    assert answer(test, expected, {"a": test["effect"], "b": 2.0}, complete=True) == wanted
+    assert answer(test, expected, {"a": test["effect"], "b": 2.0}, complete=False) == (
+        wanted if expected is None else OPEN
+    )
+
+
+def run(folder: Path, *words: str) -> dict[str, list[dict]]:
+    """Runs the study and checks its page, and returns its tables."""
+    made = hedon("study", "run", *words, cwd=folder)
+    assert made.returncode == 0, made.stderr
+    page = json.loads((folder / "studies" / NAME / "study.json").read_text(encoding="utf-8"))
+    tables = {key: table["rows"] for key, table in page["tables"].items()}
+    answers = {entry["answer"] for name, table in tables.items() if name.endswith("_verdict") for entry in table}
+    assert answers <= {OPEN, NONE}
+    for item in page["items"]:
+        assert (folder / "studies" / NAME / "figures" / f"{item['name']}.svg").stat().st_size > 10_000
+    return tables
+
+
+def test_it_goes_from_settings_to_a_page(tmp_path: Path) -> None:
+    tables = run(tmp_path, NAME, "--seeds", "1-2", "--steps", "128")
+    assert len(tables["learner_landscape_verdict"]) == 10
+    assert {entry["worlds"] for entry in tables["learner_landscape_verdict"][:5]} == {2}
+    assert len(tables["learner_landscape_world"]) == 12
+    assert len(tables["learner_evolution_world"]) == 4
+    shown = hedon("study", "report", "learner-landscape", "--seeds", "3", "--steps", "128", cwd=tmp_path)
+    assert shown.returncode == 0, shown.stderr
+    assert NAME in hedon("study", "list", cwd=tmp_path).stdout
+
+
+@pytest.mark.long
+def test_a_quick_trial_of_it_makes_one_short_world_of_each_learner(tmp_path: Path) -> None:
+    tables = run(tmp_path, NAME, "--quick")
+    assert len(tables["world"]) == 8
