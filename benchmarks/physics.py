@@ -81,8 +81,8 @@ def drive(config: Config, scene: Any, left: NDArray, right: NDArray) -> None:
     angle = scene.array("angle")
     scene.array("force_x")[:] = -np.sin(angle) * (left + right)
     scene.array("force_y")[:] = np.cos(angle) * (left + right)
-    own = config.species[ONLY]
-    arm = own.body.radius * math.sin(math.radians(own.motor.angle))
+    species_config = config.species[ONLY]
+    arm = species_config.body.radius * math.sin(math.radians(species_config.motor.angle))
     scene.array("force_torque")[:] = (right - left) * arm
 
 

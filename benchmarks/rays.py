@@ -51,10 +51,10 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
 def _view_of(world: World, index: int) -> tuple[NDArray, NDArray, NDArray, int, NDArray, float, float]:
     """Arguments of `cast_rays` for one agent: circles that its rays may hit, walls, directions, and ray length."""
     config, agents, foods = world.config, world.agents(), world.foods()
-    own = config.species[ONLY]
+    species_config = config.species[ONLY]
     x, y, heading = (agents[name][index] for name in ("x", "y", "angle"))
     others = np.delete(np.arange(world.alive), index)
-    sizes = [np.full(len(others), own.body.radius), np.full(len(foods["x"]), config.world.food_radius)]
+    sizes = [np.full(len(others), species_config.body.radius), np.full(len(foods["x"]), config.world.food_radius)]
     circles = np.column_stack(
         [
             np.concatenate([agents["x"][others], foods["x"]]) - x,
@@ -64,19 +64,19 @@ def _view_of(world: World, index: int) -> tuple[NDArray, NDArray, NDArray, int, 
     ).astype(np.float32)
     types = np.concatenate([np.zeros(len(others)), 1 + foods["kind"]]).astype(np.int32)
 
-    spread_angle = np.radians(own.sensor.ray_spread)
+    spread_angle = np.radians(species_config.sensor.ray_spread)
     distance = np.hypot(circles[:, 0], circles[:, 1])
     aside = np.arctan2(-circles[:, 0], circles[:, 1]) - heading
     aside = np.abs((aside + np.pi) % (2 * np.pi) - np.pi)
     width = np.arcsin(np.minimum(circles[:, 2] / distance, 1))
-    near = distance < own.body.radius + own.sensor.ray_length + circles[:, 2]
+    near = distance < species_config.body.radius + species_config.sensor.ray_length + circles[:, 2]
     sighted = near & (aside <= spread_angle + width)
 
-    angles = heading + np.linspace(-spread_angle, spread_angle, own.sensor.ray_count)
+    angles = heading + np.linspace(-spread_angle, spread_angle, species_config.sensor.ray_count)
     directions = np.column_stack([-np.sin(angles), np.cos(angles)]).astype(np.float32)
     segments = walls(config.arena) - np.array([x, y, x, y], np.float32)
     wall_type = 1 + len(config.food)
-    reach = own.body.radius, own.sensor.ray_length
+    reach = species_config.body.radius, species_config.sensor.ray_length
     return circles[sighted], types[sighted], segments, wall_type, directions, *reach
 
 

@@ -47,12 +47,12 @@ def _stream(plan: Plan, folder: Path) -> Row:
     neutral = config.species[ONLY].genome.neutral_count
     manifest = Manifest(tuple(config.food), neutral, (world.seed,), max(steps, world.step))
 
-    wall, total, own = time.perf_counter(), time.process_time(), time.thread_time()
+    wall, total, caller = time.perf_counter(), time.process_time(), time.thread_time()
     with Writer(folder, dump_toml(config), manifest) as writer:
         for rows in stream:
             writer.append("agents", rows)
             writer.append("population", population)
-    wall, total, own = time.perf_counter() - wall, time.process_time() - total, time.thread_time() - own
+    wall, total, caller = time.perf_counter() - wall, time.process_time() - total, time.thread_time() - caller
     written = open_run(folder)
     require(written.agents().height == windows * deaths, "records: the agents read back are not those written")
     require(written.population().height == windows, "records: the population rows read back are not those written")
@@ -60,8 +60,8 @@ def _stream(plan: Plan, folder: Path) -> Row:
         "stream_rows": windows * (deaths + 1),
         "stream_steps": steps,
         "stream_seconds": wall,
-        "stream_caller_cpu_seconds": own,
-        "stream_thread_cpu_seconds": total - own,
+        "stream_caller_cpu_seconds": caller,
+        "stream_thread_cpu_seconds": total - caller,
         "bytes_per_1e6_steps": sum(f.stat().st_size for f in folder.rglob("*.parquet")) * 1e6 / steps,
     }
 

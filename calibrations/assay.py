@@ -92,8 +92,8 @@ def _drifting_course(rng: np.random.Generator) -> WorldCourse:
     walks -= walks[..., :1]
     return WorldCourse(
         generations=GENERATIONS,
-        mean={gene: own[0] for gene, own in zip(_GENES, walks, strict=True)},
-        neutral={gene: own[1:] for gene, own in zip(_GENES, walks, strict=True)},
+        mean={gene: gene_walks[0] for gene, gene_walks in zip(_GENES, walks, strict=True)},
+        neutral={gene: gene_walks[1:] for gene, gene_walks in zip(_GENES, walks, strict=True)},
     )
 
 

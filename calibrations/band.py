@@ -33,9 +33,11 @@ def _config(law: int) -> Config:
 
 def _mutations(rng: np.random.Generator, config: Config, count: int) -> np.ndarray:
     genome = config.species["agent"].genome
-    own = genome.mutation.get(_GENE)
-    law = own.law if own else genome.mutation_law
-    scale, probability = (own.scale, own.probability) if own else (genome.mutation_scale, genome.mutation_probability)
+    mutation = genome.mutation.get(_GENE)
+    law = mutation.law if mutation else genome.mutation_law
+    scale, probability = (
+        (mutation.scale, mutation.probability) if mutation else (genome.mutation_scale, genome.mutation_probability)
+    )
     draws = {"cauchy": rng.standard_cauchy, "normal": rng.standard_normal}
     noise = draws[law](count) if law in draws else rng.uniform(-1.0, 1.0, count)
     return scale * noise * (rng.random(count) < probability)

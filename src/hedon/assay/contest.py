@@ -260,7 +260,7 @@ def points_of(founders: Founders, groups: tuple[str, str], species: str) -> tupl
 
 
 def _lines(world: WorldRecord, founders: Founders, groups: tuple[str, str], steps: int) -> Lines:
-    if world.own.birth.mating == "pairs":
+    if world.species_config.birth.mating == "pairs":
         points = points_of(founders, groups, world.species)
         return world_lines(world.agents, world.seed, by_gene(world.agents, *points), steps)
     first_id = 0  # IDs of founders follow the order of species
@@ -268,7 +268,7 @@ def _lines(world: WorldRecord, founders: Founders, groups: tuple[str, str], step
         if name == world.species:
             break
         first_id += species.population.initial_count
-    first = [name == groups[0] for name in founders.groups(world.seed, world.own.population.initial_count)]
+    first = [name == groups[0] for name in founders.groups(world.seed, world.species_config.population.initial_count)]
     return world_lines(world.agents, world.seed, by_descent(world.agents, first, first_id), steps)
 
 

@@ -164,7 +164,7 @@ def measure_landscape(sample: Sample, genes: tuple[str, str], species: str | Non
         steps=sample.steps,
         seeds=tuple(world.seed for world in worlds),
         extinct=tuple(world.seed for world in worlds if world.extinct_step is not None),
-        founders=worlds[0].own.population.initial_count,
+        founders=worlds[0].species_config.population.initial_count,
         genes=genes,
         surfaces=surfaces,
         outcomes=outcomes.drop("world"),

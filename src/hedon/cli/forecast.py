@@ -40,5 +40,5 @@ def forecast(
     from hedon.demography.forecast import forecast as predict
 
     config = load_config(source, fidelity, overrides or ())
-    own = choose_species(species, config)
-    make_console().print(forecast_group(config, own, predict(config, own), steps))
+    species = choose_species(species, config)
+    make_console().print(forecast_group(config, species, predict(config, species), steps))

@@ -19,13 +19,13 @@ def with_options(kind: type) -> Callable[[Command], Command]:
 
     def wrap(command: Command) -> Command:
         @wraps(command)
-        def call(**given: Any) -> None:
-            options = kind(**{each.name: given.pop(each.name) for each in shared})
-            command(**given, options=options)
+        def call(**arguments: Any) -> None:
+            options = kind(**{each.name: arguments.pop(each.name) for each in shared})
+            command(**arguments, options=options)
 
-        own = inspect.signature(command, eval_str=True).parameters.values()
-        mine = [each for each in own if each.name != "options"]
-        call.__dict__["__signature__"] = inspect.Signature([*mine, *shared])  # typer reads this
+        parameters = inspect.signature(command, eval_str=True).parameters.values()
+        unshared = [parameter for parameter in parameters if parameter.name != "options"]
+        call.__dict__["__signature__"] = inspect.Signature([*unshared, *shared])  # typer reads this
         return call
 
     return wrap

@@ -24,7 +24,7 @@ class Config(Settings):
 
     def _repr_html_(self) -> str:
         """Shown in notebooks: the settings that differ from the preset."""
-        rows = [[path, _said(old), _said(new)] for path, old, new in self._changes()]
+        rows = [[path, _formatted(old), _formatted(new)] for path, old, new in self._changes()]
         return table_html(f"{self.name} ({self.fidelity})", ("setting", self.preset, "here"), rows)
 
     def _changes(self) -> list[tuple[str, Any, Any]]:
@@ -76,7 +76,7 @@ def validated(config: Config, origin: str = "config") -> Config:
     return build(Config, asdict(config), origin)
 
 
-def _said(value: Any) -> str:
+def _formatted(value: Any) -> str:
     return "(absent)" if value is None else format_value(value)
 
 

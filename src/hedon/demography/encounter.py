@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 
 
 def encounter_rates(
-    config: Config, own: SpeciesConfig, places: Sequence[Floats], steps: int, rng: np.random.Generator
+    config: Config, species_config: SpeciesConfig, places: Sequence[Floats], steps: int, rng: np.random.Generator
 ) -> Floats:
     """Visits of an agent's mouth to a place of food, by the time since the agent was born.
 
@@ -35,7 +35,7 @@ def encounter_rates(
 
     Args:
         config: Settings of the world.
-        own: Settings of the species.
+        species_config: Settings of the species.
         places: Centers of places [u], (places, 2) for each kind of food.
         steps: Length of the walk [step].
         rng: Random number generator for the walks.
@@ -46,7 +46,7 @@ def encounter_rates(
     counts, size = [len(points) for points in places], np.array([config.arena.width, config.arena.height])
     start = throw(
         lambda count: rng.random((count, 2)) * size,
-        lambda positions: is_within_walls(config, own.body.radius, positions),
+        lambda positions: is_within_walls(config, species_config.body.radius, positions),
         0.0,
         _WALKERS,
     )
@@ -54,12 +54,14 @@ def encounter_rates(
     if not len(start) or not sum(counts):
         return visits
     kind, sites = np.repeat(np.arange(len(places)), counts), np.vstack(places)
-    tree, reach = spatial.KDTree(sites), own.body.radius + config.world.food_radius
+    tree, reach = spatial.KDTree(sites), species_config.body.radius + config.world.food_radius
     # When an agent last touched a place that it had visited.
     last_touch = np.full((len(start), len(sites)), -_PAUSE - 1)
-    middle = np.exp(1j * math.radians(own.sensor.mouth_center))
-    edge = math.cos(math.radians(own.sensor.mouth_spread)) if own.sensor.mouth_spread < 180 else -2.0
-    walk = unlearned_walk(config, own, start[:, 0] + 1j * start[:, 1], steps, rng)
+    middle = np.exp(1j * math.radians(species_config.sensor.mouth_center))
+    edge = (
+        math.cos(math.radians(species_config.sensor.mouth_spread)) if species_config.sensor.mouth_spread < 180 else -2.0
+    )
+    walk = unlearned_walk(config, species_config, start[:, 0] + 1j * start[:, 1], steps, rng)
     for step, (place, heading) in enumerate(walk, start=1):
         if step % _STRIDE:
             continue
@@ -77,7 +79,7 @@ def encounter_rates(
     return visits / (len(start) * np.maximum(counts, 1)[:, None] * (steps / BINS))
 
 
-def gaps(config: Config, own: SpeciesConfig, scene: Floats) -> float:
+def gaps(config: Config, species_config: SpeciesConfig, scene: Floats) -> float:
     """Number of neighbors per food at a distance at which a body gets stuck between the two, out of its mouth's reach.
 
     Food is solid. Two pieces stop a body that meets both at once. Its mouth reaches neither if they are further apart
@@ -85,12 +87,12 @@ def gaps(config: Config, own: SpeciesConfig, scene: Floats) -> float:
 
     Args:
         config: Settings of the world, for the size of food.
-        own: Settings of the species.
+        species_config: Settings of the species.
         scene: Places occupied at the same time [u], (foods, 2).
     """
     if len(scene) < 2:
         return 0.0
-    body_spacing = 2.0 * (own.body.radius + config.world.food_radius)
-    mouth_spacing = body_spacing * math.sin(math.radians(min(own.sensor.mouth_spread, 90.0)))
+    body_spacing = 2.0 * (species_config.body.radius + config.world.food_radius)
+    mouth_spacing = body_spacing * math.sin(math.radians(min(species_config.sensor.mouth_spread, 90.0)))
     tree = spatial.KDTree(scene)
     return float(tree.count_neighbors(tree, body_spacing) - tree.count_neighbors(tree, mouth_spacing)) / len(scene)

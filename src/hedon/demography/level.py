@@ -38,11 +38,11 @@ class Room:
     success: float
 
 
-def levels_of(own: SpeciesConfig, places: tuple[Room, ...]) -> tuple[EnergyLevel, ...]:
+def levels_of(species_config: SpeciesConfig, places: tuple[Room, ...]) -> tuple[EnergyLevel, ...]:
     """Lives at some energies up to the capacity."""
-    capacity = own.energy.capacity
+    capacity = species_config.energy.capacity
     energies = [*(energy for energy in (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if energy < capacity), capacity]
-    return tuple(_level(own, energy, places) for energy in energies)
+    return tuple(_level(species_config, energy, places) for energy in energies)
 
 
 def _level(species: SpeciesConfig, energy: float, places: tuple[Room, ...]) -> EnergyLevel:

@@ -29,7 +29,7 @@ def fresh_force(motor: MotorConfig) -> float:
 
 
 def unlearned_walk(
-    config: Config, own: SpeciesConfig, place: Points, steps: int, rng: np.random.Generator
+    config: Config, species_config: SpeciesConfig, place: Points, steps: int, rng: np.random.Generator
 ) -> Iterator[tuple[Points, Points]]:
     """Moves agents as the engine does while their policies are new, ignoring other agents.
 
@@ -39,7 +39,7 @@ def unlearned_walk(
 
     Args:
         config: Settings of the arena and the physics.
-        own: Body, motors and policy of the species; "idle" agents rest.
+        species_config: Body, motors and policy of the species; "idle" agents rest.
         place: Initial centers [u], shape (agents,).
         steps: Length of the walk [step].
         rng: Random number generator for headings and actions.
@@ -47,8 +47,8 @@ def unlearned_walk(
     Yields:
         Centers [u] and headings (of length 1) after each step, (agents,) each; the arrays are reused.
     """
-    physics, motor, radius = config.physics, own.motor, own.body.radius
-    mass = own.body.density * math.pi * radius**2
+    physics, motor, radius = config.physics, species_config.motor, species_config.body.radius
+    mass = species_config.body.density * math.pi * radius**2
     lever = radius * math.sin(math.radians(motor.angle)) / (0.5 * mass * radius**2)
     low, high = (motor.force_scale * force for force in (motor.min_force, motor.max_force))
     slowing, turning = (math.exp(-rate * physics.dt) for rate in (physics.linear_damping, physics.angular_damping))
@@ -56,10 +56,10 @@ def unlearned_walk(
     linear_decay, angular_decay = slowing ** (physics.substeps - 1), turning ** (physics.substeps - 1)
     count, max_speed = len(place), physics.max_speed
     place, velocity, spin = place.copy(), np.zeros(count, np.complex128), np.zeros(count)
-    angle = own.population.heading_range * rng.random(count)
+    angle = species_config.population.heading_range * rng.random(count)
     heading = 1j * np.exp(1j * angle)
     boundary = _Boundary(config, radius)
-    is_idle = own.learning.policy == "idle"
+    is_idle = species_config.learning.policy == "idle"
     for _ in range(steps):
         force = (
             low + (high - low) / (1.0 + np.exp(-rng.normal(size=(2, count)))) if not is_idle else np.zeros((2, count))

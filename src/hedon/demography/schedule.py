@@ -51,22 +51,24 @@ def factor_range(schedules: Mapping[str, ScheduleConfig], name: str) -> tuple[fl
     return min(factors, default=1.0), max(factors, default=1.0)
 
 
-def hazard_of(own: SpeciesConfig) -> HazardConfig:
+def hazard_of(species_config: SpeciesConfig) -> HazardConfig:
     """Hazard of a species by energy and age, with its weight of energy."""
-    weight = own.energy.hazard_weight if own.hazard.form == "age_energy" else 1.0
-    return replace(own.hazard, kappa=weight * own.hazard.kappa)
+    weight = species_config.energy.hazard_weight if species_config.hazard.form == "age_energy" else 1.0
+    return replace(species_config.hazard, kappa=weight * species_config.hazard.kappa)
 
 
-def birth_of(own: SpeciesConfig) -> BirthConfig:
+def birth_of(species_config: SpeciesConfig) -> BirthConfig:
     """Probability of a child by energy, for agents with the best levels of all other stores: full or empty."""
-    store_weight = sum(max(store.birth_weight, 0.0) * store.capacity for store in own.store.values())
-    beta, offset = own.birth.beta, own.birth.logit_offset
-    return replace(own.birth, beta=own.energy.birth_weight * beta, logit_offset=offset - beta * store_weight)
+    store_weight = sum(max(store.birth_weight, 0.0) * store.capacity for store in species_config.store.values())
+    beta, offset = species_config.birth.beta, species_config.birth.logit_offset
+    return replace(
+        species_config.birth, beta=species_config.energy.birth_weight * beta, logit_offset=offset - beta * store_weight
+    )
 
 
-def mean_hazard(own: SpeciesConfig) -> HazardConfig:
+def mean_hazard(species_config: SpeciesConfig) -> HazardConfig:
     """Hazard of a species at the mean factor of its schedule."""
-    return scaled_hazard(hazard_of(own), mean_factor(own.hazard.schedule, "scale"))
+    return scaled_hazard(hazard_of(species_config), mean_factor(species_config.hazard.schedule, "scale"))
 
 
 def scaled_hazard(hazard: HazardConfig, factor: float) -> HazardConfig:

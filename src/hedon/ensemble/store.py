@@ -66,7 +66,7 @@ class Store:
             raise EnsembleError(f"{location}: {error}") from error
         # Listings must not come from a cache, since other machines write here too.
         self._system.use_listings_cache = False
-        self._made: set[str] = set()
+        self._created: set[str] = set()
 
     def write(self, name: str, content: bytes) -> None:
         """Writes a content atomically, replacing an earlier one.
@@ -80,10 +80,10 @@ class Store:
         """
         path = self._path(name)
         parent, _, file_name = path.rpartition("/")
-        with self._asked(f"cannot write {name} to"):
-            if parent not in self._made:
+        with self._requesting(f"cannot write {name} to"):
+            if parent not in self._created:
                 self._system.makedirs(parent, exist_ok=True)
-                self._made.add(parent)
+                self._created.add(parent)
             if self.folder is not None:
                 write_atomically(Path(path), lambda file: file.write(content))
                 return
@@ -98,7 +98,7 @@ class Store:
 
     def read(self, name: str) -> bytes | None:
         """Reads a content; None if there is none with this name. Raises EnsembleError if it cannot be read."""
-        with self._asked(f"cannot read {name} of"), suppress(FileNotFoundError, NotADirectoryError):
+        with self._requesting(f"cannot read {name} of"), suppress(FileNotFoundError, NotADirectoryError):
             for tries_left in reversed(range(TRIES)):
                 try:
                     return self._system.cat_file(self._path(name))
@@ -121,18 +121,18 @@ class Store:
         """The sorted names of the entries of a folder. Raises EnsembleError if they cannot be listed."""
         self._system.invalidate_cache()
         entries: list[str] = []
-        with self._asked(f"cannot list {folder} of"), suppress(FileNotFoundError, NotADirectoryError):
+        with self._requesting(f"cannot list {folder} of"), suppress(FileNotFoundError, NotADirectoryError):
             entries = self._system.ls(self._path(folder), detail=False)
         names = (path.rstrip("/").rpartition("/")[2] for path in entries)
         return sorted({name for name in names if name and not name.startswith(".")})
 
     def remove(self, name: str) -> None:
         """Removes a content, if it exists. Raises EnsembleError if it cannot be removed."""
-        with self._asked(f"cannot remove {name} of"), suppress(FileNotFoundError, NotADirectoryError):
+        with self._requesting(f"cannot remove {name} of"), suppress(FileNotFoundError, NotADirectoryError):
             self._system.rm_file(self._path(name))
 
     @contextmanager
-    def _asked(self, action: str) -> Iterator[None]:
+    def _requesting(self, action: str) -> Iterator[None]:
         """Converts any error of the file system's library to an EnsembleError with a one-line message."""
         try:
             yield

@@ -35,7 +35,7 @@ class SlotVecEnv(VecEnv, Copied):
     def __init__(self, worlds: VectorEnv) -> None:
         self.lives = SlotLives(worlds, at_once=True)
         self.worlds, self.render_mode = worlds, worlds.render_mode
-        self._given: Any = self.lives.group.actions
+        self._next_actions: Any = self.lives.group.actions
         self._begun = time.monotonic()
         super().__init__(self.lives.count, worlds.single_observation_space, worlds.single_action_space)
 
@@ -52,11 +52,11 @@ class SlotVecEnv(VecEnv, Copied):
 
     def step_async(self, actions: Any) -> None:
         """Sets the actions of all agents: (slots, 2)."""
-        self._given = actions
+        self._next_actions = actions
 
     def step_wait(self) -> Any:
         """Advances the worlds: observations (slots, entries), rewards (slots,), ends of lives (slots,), infos."""
-        step = self.lives.step(self._given)
+        step = self.lives.step(self._next_actions)
         infos: list[dict[str, Any]] = [{"alive": is_alive} for is_alive in step.alive.tolist()]
         elapsed = round(time.monotonic() - self._begun, 6)
         for i in np.flatnonzero(step.ended).tolist():
@@ -65,13 +65,13 @@ class SlotVecEnv(VecEnv, Copied):
         return step.observations, step.rewards, step.ended, infos
 
     def __getstate__(self) -> dict[str, Any]:
-        actions = None if self._given is self.lives.group.actions else self._given
-        return self.__dict__ | {"_given": actions}
+        actions = None if self._next_actions is self.lives.group.actions else self._next_actions
+        return self.__dict__ | {"_next_actions": actions}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        if self._given is None:
-            self._given = self.lives.group.actions
+        if self._next_actions is None:
+            self._next_actions = self.lives.group.actions
 
     def close(self) -> None:
         """Closes the worlds."""

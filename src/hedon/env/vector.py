@@ -97,14 +97,14 @@ class VectorEnv(Cloned):
         if world is not None and record is not None:
             raise ArgumentError("record: records begin with worlds, and these go on from a saved one: leave one out")
         self._start = None if world is None else simulation._become(world)
-        self._made(simulation, names, form)
+        self._set_up(simulation, names, form)
         self._open(np.ones(len(seeds), np.bool_))
         if record is not None:
             from hedon.env.record import Records  # imported late: it loads the table writers
 
             self._record = Records(simulation, record, frames)
 
-    def _made(self, simulation: Simulation, names: Sequence[str], form: Form) -> None:
+    def _set_up(self, simulation: Simulation, names: Sequence[str], form: Form) -> None:
         self.simulation, self.config = simulation, simulation.config
         simulation._driven = True
         species_names = list(self.config.species)
@@ -122,11 +122,11 @@ class VectorEnv(Cloned):
             for name in names
         }
         self._form, self._fresh = form, True
-        self._seeded_by(simulation.seeds)
+        self._fix_later_seeds(simulation.seeds)
         self._steps = np.zeros(len(simulation.worlds), np.int64)  # of each world since its start
         self._eye: Any = None
         self._record: Any = None  # a copy has no records either
-        self._keep_own("_told", "spaces")
+        self._keep_own("_returned", "spaces")
 
     def __repr__(self) -> str:
         return f"<VectorEnv driving {' and '.join(self.groups)} in {self.simulation!r}>"
@@ -134,12 +134,12 @@ class VectorEnv(Cloned):
     @property
     def observations(self) -> Any:
         """(worlds, slots, entries) float32: see `Group.observations`."""
-        return self._told[0]
+        return self._returned[0]
 
     @property
     def rewards(self) -> Any:
         """(worlds, slots) float32: see `Group.rewards`."""
-        return self._told[1]
+        return self._returned[1]
 
     @property
     def alive(self) -> Any:
@@ -193,7 +193,7 @@ class VectorEnv(Cloned):
         mask = reset_mask(options, len(self.simulation.worlds))
         if seed is not None:
             seeds = world_seeds(seed, len(mask))
-            self._seeded_by(seeds)
+            self._fix_later_seeds(seeds)
         elif self._fresh and mask.all():
             seeds = self.simulation.seeds
         else:
@@ -212,9 +212,9 @@ class VectorEnv(Cloned):
         self._fresh = False
         if self.render_mode == "human":
             self.render()
-        return self._told[0], self._told[4]
+        return self._returned[0], self._returned[4]
 
-    def _seeded_by(self, seeds: Sequence[int]) -> None:
+    def _fix_later_seeds(self, seeds: Sequence[int]) -> None:
         """Fixes the seeds of later worlds; environments with neighboring seeds have nothing in common."""
         self._next_seed = int(np.random.SeedSequence(list(map(int, seeds))).generate_state(1, np.uint64)[0])
 
@@ -264,12 +264,12 @@ class VectorEnv(Cloned):
                     group._look(engine)
                 else:
                     group._count(engine, first=steps_done == 1, last=last)
-        self._judge(steps_done)
+        self._mark_truncated(steps_done)
         if stopped is not None:
             raise stopped
         if self.render_mode == "human":
             self.render()
-        return self._told
+        return self._returned
 
     def render(self, world: int = 0) -> NDArray[np.uint8] | None:
         """Draws the current state of a world: (height, width, 3); None without a `render_mode`.
@@ -328,27 +328,27 @@ class VectorEnv(Cloned):
     def clone(self) -> Self:
         """Returns a copy with its own worlds and arrays, which continues as this one would; it is not recorded."""
         duplicate = type(self).__new__(type(self))
-        duplicate._go_on(self.simulation._fresh_one(), **self._given(), saved=self.save())
+        duplicate._continue_from(self.simulation._fresh_one(), **self._arguments(), saved=self.save())
         return duplicate
 
     def __getstate__(self) -> dict[str, Any]:
-        return self._given() | {"saved": self.save(), "worlds": self.simulation._arguments()}
+        return self._arguments() | {"saved": self.save(), "worlds": self.simulation._arguments()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         simulation = Simulation.__new__(Simulation)
         simulation.__setstate__(state.pop("worlds"))
-        self._go_on(simulation, **state)
+        self._continue_from(simulation, **state)
 
-    def _given(self) -> dict[str, Any]:
+    def _arguments(self) -> dict[str, Any]:
         arguments = {name: vars(self)[name] for name in ("repeat", "max_steps", "render_mode", "_start")}
         return {**arguments, "about": self._about(), "added": self._added()}
 
-    def _go_on(
+    def _continue_from(
         self, simulation: Simulation, about: Any, saved: bytes, added: dict[str, Any], **attributes: Any
     ) -> None:
         """Sets up a copy from the state of another environment."""
         vars(self).update(attributes)
-        self._made(simulation, about["species"], about["actions"])
+        self._set_up(simulation, about["species"], about["actions"])
         self.restore(saved)
         vars(self).update(copy.deepcopy(added))
 
@@ -368,7 +368,7 @@ class VectorEnv(Cloned):
         }
 
     @cached_property
-    def _told(self) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+    def _returned(self) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """The arrays that every step returns; they are never replaced."""
         info = {name: self._of(name) for name in ("alive", "born", "births", "deaths", "meals")}
         observations, rewards, terminated, truncated = map(
@@ -381,7 +381,7 @@ class VectorEnv(Cloned):
         arrays = {species: getattr(group, name) for species, group in self.groups.items()}
         return arrays if len(arrays) > 1 else next(iter(arrays.values()))
 
-    def _judge(self, steps: int) -> None:
+    def _mark_truncated(self, steps: int) -> None:
         """Marks the agents that have reached `max_steps`."""
         self._steps += steps
         if self.max_steps:

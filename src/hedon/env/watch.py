@@ -38,7 +38,7 @@ class Watch:
 
     def __init__(self, records: Records, worlds: int) -> None:
         self._records, self._worlds, self._begun = records, worlds, 0.0
-        self._callback = CALLBACK(self._told)  # keeps it alive: the engine has only its address
+        self._callback = CALLBACK(self._called)  # keeps it alive: the engine has only its address
 
     @property
     def address(self) -> int:
@@ -49,7 +49,7 @@ class Watch:
         """Finishes the records."""
         self._records.close()
 
-    def _told(self, watched: int, restarting: Any, seeds: Any, complaint: int, room: int) -> int:
+    def _called(self, watched: int, restarting: Any, seeds: Any, complaint: int, room: int) -> int:
         """Writes what is due at one moment. Returns 0, or 1 with a message, as no exception may reach the engine."""
         try:
             self._write(watched, restarting, seeds)

@@ -87,7 +87,7 @@ class Simulation(Cloned):
         self, inputs: EngineInput, seeds: tuple[int, ...], threads: int, backend: str, rules: tuple[Rule, ...]
     ) -> None:
         self.config = inputs.config
-        self._given, self._backend = inputs, backend
+        self._inputs, self._backend = inputs, backend
         self._driven = False  # whether an environment drives the worlds
         self._threads = integer("threads", threads, 0, MAX_THREADS)
         if not isinstance(backend, str):
@@ -295,7 +295,7 @@ class Simulation(Cloned):
     def _fresh_one(self) -> Self:
         """A new simulation with the same arguments, at its start."""
         simulation = type(self).__new__(type(self))
-        simulation._begin(self._given, self.seeds, self._threads, self._backend, self.rules)
+        simulation._begin(self._inputs, self.seeds, self._threads, self._backend, self.rules)
         return simulation
 
     @cached_property
@@ -335,7 +335,7 @@ class Simulation(Cloned):
         if self.config.obstacle.count:
             raise ArgumentError("world: the places of obstacles follow from a world's seed: these worlds have some")
         single = type(self).__new__(type(self))
-        single._begin(self._given, (0,), 1, self._backend, self.rules)
+        single._begin(self._inputs, (0,), 1, self._backend, self.rules)
         single._unpack(saved)
         single._restore(saved)
         arrays = single.engine.save(0)

@@ -40,10 +40,10 @@ def draw_body(config: Config) -> Figure:
     return figure
 
 
-def ray_directions(own: SpeciesConfig) -> NDArray[np.float64]:
+def ray_directions(species_config: SpeciesConfig) -> NDArray[np.float64]:
     """Unit vectors of the rays of an agent that looks along +y, the right-most first, shape (rays, 2)."""
-    spread = math.radians(own.sensor.ray_spread)
-    angle = np.linspace(-spread, spread, own.sensor.ray_count)
+    spread = math.radians(species_config.sensor.ray_spread)
+    angle = np.linspace(-spread, spread, species_config.sensor.ray_count)
     return np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
 
 

@@ -22,16 +22,16 @@ _LINEAR_SCALE = (1.0 - 1.0 / 10.0) / math.log(10.0)
 """Length of the linear part in decades, so that the slope of the axis is continuous and curves have no kink."""
 
 
-def draw_demography(own: SpeciesConfig, populations: list[pl.DataFrame]) -> Figure:
+def draw_demography(species_config: SpeciesConfig, populations: list[pl.DataFrame]) -> Figure:
     """Draws R0 and mean lifetime at constant energy; shading shows the energies in the last tenth of the runs."""
-    energy = _energies(own)
-    lifetime = expected_lifetime(mean_hazard(own), energy)
+    energy = _energies(species_config)
+    lifetime = expected_lifetime(mean_hazard(species_config), energy)
     finite = lifetime[np.isfinite(lifetime)]
     unit, name = step_unit(float(finite.max(initial=0.0)))
     with styled():
         figure = new_figure(8.6, 3.2)
         left, right = figure.subplots(1, 2, sharex=True)
-        handles: list[Artist] = [draw_reproduction(left, own)]
+        handles: list[Artist] = [draw_reproduction(left, species_config)]
         right.plot(energy, np.where(np.isfinite(lifetime), lifetime / unit, np.nan), color=BLUE, linewidth=2.0)
         right.set_title(f"mean life [{name}]")
         _set_axes(right, energy)
@@ -46,14 +46,14 @@ def draw_demography(own: SpeciesConfig, populations: list[pl.DataFrame]) -> Figu
     return figure
 
 
-def draw_reproduction(axes: Axes, own: SpeciesConfig) -> Line2D:
+def draw_reproduction(axes: Axes, species_config: SpeciesConfig) -> Line2D:
     """Draws R0 at constant energy, and the line R0 = 1, at which a lineage keeps its size.
 
     Returns:
         The line R0 = 1, with its label, for the legend.
     """
-    energy = _energies(own)
-    r0 = reproduction_number(mean_hazard(own), birth_of(own), energy)
+    energy = _energies(species_config)
+    r0 = reproduction_number(mean_hazard(species_config), birth_of(species_config), energy)
     axes.plot(energy, np.where(np.isfinite(r0), r0, np.nan), color=BLUE, linewidth=2.0)
     reference_line = axes.axhline(
         1.0, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="R0 = 1: a lineage keeps its size"

@@ -46,17 +46,17 @@ def draw_hazard(config: HazardConfig) -> Figure:
     return figure
 
 
-def draw_birth(own: SpeciesConfig) -> Figure:
+def draw_birth(species_config: SpeciesConfig) -> Figure:
     """Draws the chance of a birth by energy, and the births attempted in a life at constant energy."""
-    energy = np.linspace(0, min(_MOST_ENERGY, own.energy.capacity), _POINTS)
-    none = float(reproduction_number(own.hazard, birth_of(own), 0.0))
+    energy = np.linspace(0, min(_MOST_ENERGY, species_config.energy.capacity), _POINTS)
+    none = float(reproduction_number(species_config.hazard, birth_of(species_config), 0.0))
     with styled():
         figure = new_figure(8.6, 3.2)
         chance, children = figure.subplots(1, 2)
-        chance.plot(energy, 1e3 * birth_rate(birth_of(own), energy), color=BLUE, linewidth=2.0)
-        chance.set(xlim=(0, energy[-1]), ylim=(0, 1.1e3 * own.birth.kappa), xlabel="energy")
+        chance.plot(energy, 1e3 * birth_rate(birth_of(species_config), energy), color=BLUE, linewidth=2.0)
+        chance.set(xlim=(0, energy[-1]), ylim=(0, 1.1e3 * species_config.birth.kappa), xlabel="energy")
         chance.set_title("chance of trying a birth [1/1000 steps]")
-        reference_line = draw_reproduction(children, own)
+        reference_line = draw_reproduction(children, species_config)
         figure.legend(handles=[reference_line], loc="outside lower right")
         children.plot(0, none, marker="o", markersize=6, color=VERMILION, clip_on=False, zorder=5)
         children.annotate(

@@ -197,7 +197,7 @@ def join(tables: Sequence[Founders], labels: Sequence[str], shares: Sequence[flo
     return make_founders(genes, np.concatenate(values), group, dict(zip(labels, shares, strict=True)))
 
 
-def column_of(config: Config, name: str, own: str | None = None) -> str | None:
+def column_of(config: Config, name: str, owner: str | None = None) -> str | None:
     """The column of a gene that is given by its column, its food kind, or `action`; None if there is no such gene.
 
     `food` stands for the first kind, unless a kind has this name. A gene of only one species starts with the name of
@@ -206,37 +206,37 @@ def column_of(config: Config, name: str, own: str | None = None) -> str | None:
     Args:
         config: Config that has the gene.
         name: Name of the gene.
-        own: Species to which the gene must belong; None for any.
+        owner: Species to which the gene must belong; None for any.
     """
     species, dot, gene = name.rpartition(".")
     if dot:
         column = column_of(config, gene, species) if species in config.species else None
         return None if column is None else f"{species}.{column}"
-    return _column_among(gene_columns(config) if own is None else layouts(config)[own].gene_names, name)
+    return _column_among(gene_columns(config) if owner is None else layouts(config)[owner].gene_names, name)
 
 
 def _column_among(columns: Sequence[str], name: str) -> str | None:
     return next((column for column in (name, f"w_{name}") if column in columns), columns[0] if name == "food" else None)
 
 
-def unknown_gene(config: Config, name: str, own: str | None = None) -> str:
+def unknown_gene(config: Config, name: str, owner: str | None = None) -> str:
     """The error message for an unknown gene, with the existing genes and the most similar one.
 
     Args:
         config: Config that lacks the gene.
         name: The unknown name.
-        own: Species to which the gene should belong; None for any.
+        owner: Species to which the gene should belong; None for any.
     """
     species, dot, gene = name.rpartition(".")
     prefix = f"{species}." if dot and species in config.species else ""
-    own = species if prefix else own
-    columns = gene_columns(config) if own is None else layouts(config)[own].gene_names
+    owner = species if prefix else owner
+    columns = gene_columns(config) if owner is None else layouts(config)[owner].gene_names
     gene_names = [column.removeprefix("w_") for column in columns if not column.startswith("neutral_")]
     count = sum(column.startswith("neutral_") for column in columns)
     neutral = f", neutral_1 to neutral_{count}" if count else ""
     suggestion = nearest(gene if prefix else name, [*columns, *gene_names, "food"])
     hint = f"; did you mean {prefix}{suggestion}?" if suggestion else ""
-    holder = "there are" if own is None or len(config.species) == 1 else f"{own} has"
+    holder = "there are" if owner is None or len(config.species) == 1 else f"{owner} has"
     return f"there is no gene {brief(repr(name))} ({holder} {', '.join(gene_names)}{neutral}){hint}"
 
 

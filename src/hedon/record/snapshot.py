@@ -134,15 +134,17 @@ def own_bodies(
         species: Index of each agent's species, shape (n,).
         genes: Genes of the agents by column, each of shape (n,).
     """
-    if not any(set(OWN.values()) & own.genome.set.keys() for own in config.species.values()):
+    if not any(set(OWN.values()) & each.genome.set.keys() for each in config.species.values()):
         return np.zeros((0, len(OWN)))
     properties = np.empty((len(species), len(OWN)))
-    for number, own in enumerate(config.species.values()):
+    for number, species_config in enumerate(config.species.values()):
         in_species = species == number
         for i, path in enumerate(OWN.values()):
-            is_genetic = path in own.genome.set
+            is_genetic = path in species_config.genome.set
             properties[in_species, i] = (
-                expressed(own, path, genes[gene_column(path)][in_species]) if is_genetic else value_at(own, path)
+                expressed(species_config, path, genes[gene_column(path)][in_species])
+                if is_genetic
+                else value_at(species_config, path)
             )
     return properties
 

@@ -46,7 +46,7 @@ def condition_figures(worlds: Sequence[WorldRecord], tables: Mapping[str, Result
     selection = draw_selection(rows("selection_window"), rows("selection_world"), titles, tints)
     yield figure.SELECTION.drawn(selection)
     yield figure.LINEAGE.drawn(draw_lineages(rows("lineage"), titles, tints))
-    demography = draw_demography(first_world.own, [world.population for world in worlds])
+    demography = draw_demography(first_world.species_config, [world.population for world in worlds])
     yield figure.DEMOGRAPHY.drawn(demography)
 
 

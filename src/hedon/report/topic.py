@@ -81,7 +81,7 @@ def run_topics(
     trees = {
         condition: asexual_worlds
         for condition, worlds in conditions.items()
-        if (asexual_worlds := [world for world in worlds if world.own.birth.mating == "none"])
+        if (asexual_worlds := [world for world in worlds if world.species_config.birth.mating == "none"])
     }
     tables: list[ResultTable] = []
     for done, name in enumerate(names):

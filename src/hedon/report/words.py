@@ -43,7 +43,7 @@ def _answers(worlds: Sequence[WorldRecord], tables: Mapping[str, ResultTable], r
     corrected = tests.filter(pl.col("p_holm").is_not_null() & (pl.col("test") != "recorded"))  # another family of tests
     seconds = _seconds(worlds, runs)
     subject = _who(scores, worlds)
-    sentences = [] if worlds[0].own.learning.policy == "ppo" else [UNLEARNED]
+    sentences = [] if worlds[0].species_config.learning.policy == "ppo" else [UNLEARNED]
     for name in worlds[0].reward_names:
         row = corrected.filter((pl.col("weight") == name) & (pl.col("test") == "direction"))
         if not row.is_empty():

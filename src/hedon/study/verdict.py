@@ -106,7 +106,7 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
     """
     if claim.over_worlds == "extinction":
         return _judge_extinction(claim, condition, worlds)
-    used_worlds, shortfall, remarks = _asked(claim, worlds)
+    used_worlds, shortfall, remarks = _assessed(claim, worlds)
     values = _figures(claim, used_worlds)
     result = estimate(claim, values, used_worlds)
     name = result.verdict or place(result.low, result.high, claim.low, claim.high)
@@ -132,7 +132,7 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
     """
     parts, remarks, shortfalls = [], [], []
     for worlds in (first, second):
-        used_worlds, shortfall, world_remarks = _asked(order, worlds)
+        used_worlds, shortfall, world_remarks = _assessed(order, worlds)
         parts.append(_figures(order, used_worlds))
         remarks += [f"{worlds[0].condition}: {remark}" for remark in world_remarks]
         shortfalls += [f"{worlds[0].condition}: {shortfall}"] if shortfall else []
@@ -183,7 +183,7 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
     return _verdict(claim, condition, name, share_estimate, p, against, extinction.worlds, reasons)
 
 
-def _asked(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:
+def _assessed(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:
     """The worlds to use, why they may not decide the claim, and remarks on worlds that were left out.
 
     Extinct worlds are left out, since papers replace them. If all species must survive, a remark gives the share of

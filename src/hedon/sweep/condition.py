@@ -150,23 +150,23 @@ def _by_values(loader: Loader, settings: Sequence[Settings], group: Sequence[int
     except ConfigError:
         return []
     places = {name: tuple(_places(plan.config, name)) for name in names}
-    all_places = [place for own in places.values() for place in own]
+    all_places = [place for factor_places in places.values() for place in factor_places]
     if not all(places.values()) or len(set(all_places)) < len(all_places):
         return []
     base, fingerprint = _base(plan, places), Fingerprint(plan.config)
     results: list[tuple[int, SweepCondition | ConfigError, Base | None]] = []
     configs: dict[int, Config] = {}
     for index in group:
-        own = settings[index]
+        values_of_one = settings[index]
         try:
-            config = rebuild(plan.config, changes(places, own), "")
+            config = rebuild(plan.config, changes(places, values_of_one), "")
         except ConfigError as error:
-            results.append((index, ConfigError(loader.place(own), error.problems), None))
+            results.append((index, ConfigError(loader.place(values_of_one), error.problems), None))
             continue
         if not configs or index == group[-1]:
             configs[index] = config
         values = {place: value_at(config, place) for place in all_places}
-        results.append((index, SweepCondition(fingerprint.digest(values)[:DIGITS], base.digest, own), base))
+        results.append((index, SweepCondition(fingerprint.digest(values)[:DIGITS], base.digest, values_of_one), base))
     first_invalid = next((index for index, _, base in results if base is None), None)
     is_consistent = all(_loads_as(loader, settings[index], config) for index, config in configs.items())
     return (

@@ -90,12 +90,12 @@ class Footage:
     @cached_property
     def _genomes(self) -> pl.DataFrame:
         """The genes that set body parameters, of all agents, by column."""
-        names = {gene_column(path) for own in self.config.species.values() for path in own.genome.set}
+        names = {gene_column(path) for species in self.config.species.values() for path in species.genome.set}
         return self.run.agents().filter(pl.col("world") == self.world).select("agent_id", *names)
 
     def _genes(self, ids: pl.Series) -> dict[str, NDArray[np.float32]]:
         """The genes of agents that set body parameters, by column; NaN if a species lacks one."""
-        if not any(own.genome.set for own in self.config.species.values()):
+        if not any(species.genome.set for species in self.config.species.values()):
             return {}
         rows = pl.DataFrame({"agent_id": ids}).join(self._genomes, on="agent_id", how="left", maintain_order="left")
         return {name: rows[name].to_numpy() for name in rows.columns if name != "agent_id"}

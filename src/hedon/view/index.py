@@ -105,10 +105,10 @@ def _settings(config: Config) -> dict[str, Any]:
     """The settings of a run as text: its preset, the differences from it, and all settings with their meanings."""
     return {
         "base": f"{config.preset} ({config.fidelity})",
-        "changed": [[path, _said(new), _said(old)] for path, old, new in changed_settings(config)],
+        "changed": [[path, _formatted(new), _formatted(old)] for path, old, new in changed_settings(config)],
         "all": [[path, format_value(value), setting.doc.meaning] for path, setting, value in file_leaves(config)],
     }
 
 
-def _said(value: Any) -> str:
+def _formatted(value: Any) -> str:
     return "absent" if value is None else format_value(value)

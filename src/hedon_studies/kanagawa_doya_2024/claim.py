@@ -80,7 +80,7 @@ def _extinct(world: WorldRecord) -> float | None:
 
 
 def _lifespan(world: WorldRecord) -> float | None:
-    hazard, energy = world.own.hazard, world.own.energy.capacity
+    hazard, energy = world.species_config.hazard, world.species_config.energy.capacity
     if hazard.alpha_age <= 0:
         return None
     limit = -math.log(OLD_SHARE)

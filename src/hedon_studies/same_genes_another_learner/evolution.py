@@ -42,7 +42,7 @@ def measure(world: WorldRecord) -> dict[str, Any]:
         Arm and seed; demography, with the number alive averaged over all steps; for each weight the mean among the
         living at the end and its score against neutral walks down the same pedigree.
     """
-    rate = world.own.learning.learning_rate
+    rate = world.species_config.learning.learning_rate
     arm = next((name for name, value in ARMS.items() if math.isclose(value, rate, rel_tol=1e-6)), str(rate))
     drift = standard_drift(world)
     return {
@@ -81,7 +81,7 @@ def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
 def living(world: WorldRecord) -> pl.DataFrame:
     """The rows of `living.parquet` for one world: the genes of the agents alive at the end."""
     genes = last_living(world.agents, world.population).select(pl.col(world.weight_names).cast(pl.Float32))
-    rate = pl.lit(world.own.learning.learning_rate).alias("learning_rate")
+    rate = pl.lit(world.species_config.learning.learning_rate).alias("learning_rate")
     return genes.select(rate, pl.lit(world.seed, pl.Int32).alias("seed"), pl.all())
 
 

@@ -14,7 +14,7 @@ def walked_pedigree(world: WorldRecord) -> Genealogy | None:
         from a table, whose law is unknown; children have two parents; or noise depends on a birth's number among births
         of several species.
     """
-    if world.config.world.founders or world.own.birth.mating == "pairs" or shares_noise(world):
+    if world.config.world.founders or world.species_config.birth.mating == "pairs" or shares_noise(world):
         return None
     tree = genealogy(world.agents)
     return tree if tree.size and not tree.gaps else None

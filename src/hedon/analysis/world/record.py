@@ -83,7 +83,7 @@ class WorldRecord:
         return born_since(self.agents, self.first_step)
 
     @property
-    def own(self) -> SpeciesConfig:
+    def species_config(self) -> SpeciesConfig:
         """Settings of its species."""
         return self.config.species[self.species]
 
@@ -333,8 +333,8 @@ def _differences(runs: Sequence[Run]) -> list[str]:
     varied = [path for path in paths if any(settings.get(path) != values[0].get(path) for settings in values)]
     if len(varied) > MOST_DIFFERENCES:
         return [""] * len(runs)
-    return [", ".join(f"{path} {_said(settings.get(path))}" for path in varied) for settings in values]
+    return [", ".join(f"{path} {_formatted(settings.get(path))}" for path in varied) for settings in values]
 
 
-def _said(value: Any) -> str:
+def _formatted(value: Any) -> str:
     return "absent" if value is None else brief(format_value(value), 40)

@@ -84,9 +84,9 @@ class PrintedTable:
 
     def _draw(self, columns: Sequence[_Column], width: int, *, shorten: bool) -> Table:
         table = Table(box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
-        for column, own in zip(columns, _widths(columns, width), strict=True):
+        for column, column_width in zip(columns, _widths(columns, width), strict=True):
             side = "left" if column.is_text else "right"
-            table.add_column(Text(column.header), justify=side, width=own, overflow="fold")
+            table.add_column(Text(column.header), justify=side, width=column_width, overflow="fold")
         first, *others = (column.cells for column in columns)
         rows = list(zip(_once(first) if columns[0].is_text and shorten else first, *others, strict=True))
         for i, row in enumerate(rows):
@@ -134,8 +134,8 @@ def _widths(columns: Sequence[_Column], width: int) -> list[int]:
     """Width of each column; their sum fits the table's width, except on a terminal of a few letters."""
     widths = [column.least for column in columns]
     spare = width - _needed(columns)
-    while spare > 0 and any(own < column.most for own, column in zip(widths, columns, strict=True)):
-        narrowest = min((own, i) for i, own in enumerate(widths) if own < columns[i].most)[1]
+    while spare > 0 and any(column_width < column.most for column_width, column in zip(widths, columns, strict=True)):
+        narrowest = min((column_width, i) for i, column_width in enumerate(widths) if column_width < columns[i].most)[1]
         widths[narrowest] += 1
         spare -= 1
     while spare < 0 and max(widths) > 1:
