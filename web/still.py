@@ -19,8 +19,8 @@ from hedon.view.story import PAGE  # noqa: E402
 STILL = ROOT / "web" / "public" / "still"
 WIDTH, QUALITY = 640, 60
 """Width [pixel] and quality of a JPEG file: some 30 kB for each scene."""
-STEPS = {"creature": 400, "learning": 81_920, "family": 700, "evolve": 12_288, "contest": 6_000, "sandbox": 600}
-"""The step that each scene is shown at, in the world of seed 1."""
+STEPS = {"creature": 0, "learning": 81_920, "family": 700, "evolve": 12_288, "contest": 6_000, "sandbox": 600}
+"""The step that each scene is shown at, in its first world."""
 
 
 def main() -> None:
@@ -30,8 +30,10 @@ def main() -> None:
         browser = tool.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
         for scene, step in STEPS.items():
             context = browser.new_context(viewport={"width": 1400, "height": 900}, color_scheme="light")
-            watched = Watched(context.new_page(), f"{server.link}{PAGE}#scene={scene}&seed=1&step={step}")
-            watched.until("hedon.opened !== ''", 900)
+            watched = Watched(context.new_page(), f"{server.link}{PAGE}#scene={scene}")
+            watched.until("hedon.opened !== ''")
+            watched.get(f"void hedon.scenes.{scene}.stage.runTo({step})")
+            watched.until(f"!hedon.scenes.{scene}.stage.running", 900)
             view = watched.page.locator(f"#{scene} .view")
             view.scroll_into_view_if_needed()
             watched.get("[...document.querySelectorAll('.hint')].forEach((each) => each.remove())")

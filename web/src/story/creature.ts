@@ -8,6 +8,7 @@ import { CALM, Stage } from "./stage";
 import { commandsOf, ofKeys, toward, Track } from "./steer";
 
 export const ONE_COLOR: Coloring = { name: "one", label: "a creature", scale: "distinct", value: () => 0 };
+const FIRST = 212; // the seed of a world in which it begins in the middle with food straight ahead, some 35 steps away
 const STROLL = 1500; // steps for which it moves by itself as a demonstration
 const ENOUGH = 5; // meals that reveal the second slider
 const GLOW = 3; // radii
@@ -15,7 +16,7 @@ const LASTS = 60; // time constant of a feeling's decay [steps]
 const FLAME = 0.09; // length of a motor's flame per unit of force
 
 export function creature(section: HTMLElement, worlds: Worlds): Scene {
-  const stage = new Stage(section, worlds.creature!, { scene: "creature", autoplay: true, speed: 1, coloring: ONE_COLOR, chosen: 0, rays: true, threads: 1 });
+  const stage = new Stage(section, worlds.creature!, { scene: "creature", autoplay: true, speed: 1, coloring: ONE_COLOR, chosen: 0, first: FIRST, rays: true, threads: 1 });
   const [least, most] = ["min_force", "max_force"].map((name) => stage.value(`motor.${name}`)) as [number, number];
   const commands = commandsOf(least, most);
   const keys = new Set<string>();

@@ -2,7 +2,7 @@
 
 export interface Place {
   scene: string;
-  seed: number;
+  seed: number | undefined; // undefined for the scene's first
   step: number;
   digest: string; // its first digits; "" if there is none
   changes: Map<string, string>; // settings that differ from the scene's config, by path
@@ -47,7 +47,7 @@ export function placeOf(address: string): Place | undefined {
   const rest = [...link].filter(([name]) => !OWN.has(name));
   return {
     scene,
-    seed: Number(link.get("seed") ?? 1),
+    seed: link.has("seed") ? Number(link.get("seed")) : undefined,
     step: Number(link.get("step") ?? 0),
     digest: link.get("digest") ?? "",
     changes: new Map(rest.filter(([name]) => name.includes("."))),

@@ -23,7 +23,7 @@ export async function openStage(stage: Stage, place: Place, begun: () => void = 
   }
   stage.changes.clear();
   for (const [path, value] of place.changes) stage.set([path], value);
-  stage.begin(place.seed);
+  stage.begin(place.seed ?? stage.first);
   begun();
   const { live } = stage;
   await stage.runTo(place.step, place.digest);

@@ -20,6 +20,7 @@ export interface Camera {
   speed: number; // steps per picture
   coloring: Coloring;
   chosen?: number; // the agent followed from the start
+  first?: number; // seed of its first world; undefined for 1
   autoplay?: boolean; // whether it plays as soon as it is visible
   rays?: boolean;
   threads?: number; // 0 or undefined lets the worker choose
@@ -29,7 +30,7 @@ export interface Camera {
 export class Stage {
   live!: Live;
   changes = new Map<string, string>();
-  seed = 1;
+  seed: number;
   playing = false;
   seen = false; // whether its arena is on the screen
   frame: Frame | undefined;
@@ -71,6 +72,7 @@ export class Stage {
     this.arena.showTrail = false;
     this.ink = above.getContext("2d")!;
     this.chosen = camera.chosen ?? -1;
+    this.seed = this.first;
     this.play.addEventListener("click", () => (this.running ? this.stop() : this.setPlaying(!this.playing)));
     this.again.addEventListener("click", () => this.reset());
     this.same.addEventListener("click", (event) => {
@@ -120,7 +122,7 @@ export class Stage {
   reset(): void {
     this.changes.clear();
     this.setPlaying(false);
-    this.begin(1);
+    this.begin(this.first);
     this.host.closest("section")!.dispatchEvent(new CustomEvent("reset"));
   }
 
@@ -179,6 +181,11 @@ export class Stage {
   stop(): void {
     this.wanted = "";
     this.finish();
+  }
+
+  /** The seed of its first world. */
+  get first(): number {
+    return this.camera.first ?? 1;
   }
 
   get running(): boolean {
