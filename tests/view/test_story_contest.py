@@ -130,6 +130,13 @@ def test_a_link_of_a_contest_shows_its_feelings_while_its_world_runs(article):
     assert rests(watched, "contest")
 
 
+def reveal_map(watched):
+    """Gives the contest a first result, after which the page shows the map."""
+    assert watched.page.locator("#contest-map").is_hidden(), "the reader guesses first"
+    watched.get(f"{stage('contest')}.results().push({{ seed: 1, you: 3, evolution: 5 }})")
+    watched.page.locator("#contest-map").wait_for(state="visible")
+
+
 TEXTS = """((meal, moving) => {
   const { stage } = hedon.scenes.contest;
   stage.set(["species.you.reward.meal_coef"], String(meal));
@@ -153,6 +160,7 @@ TEXTS = """((meal, moving) => {
 def test_the_names_on_the_map_stay_inside_and_apart(article):
     watched = article("contest")
     watched.until(f"{stage('contest')}.live.last === 0 && {stage('contest')}.frame")
+    reveal_map(watched)
     for meal, moving in ((-8, 8), (8, 8), (-8, -8), (8, -8), (2, 0), (-1.5, 0.5), (0.5, 0)):
         you, evolution, axes, words = watched.get(f"{TEXTS}({meal}, {moving})")
         for left, top, right, bottom in (you, evolution):
@@ -177,16 +185,22 @@ def test_bad_feelings_lose_to_evolution(article):
     assert watched.get(f"{stage('contest')}.live.digest()") == same.digest()
 
 
-def test_the_score_counts_descendants_and_a_press_on_the_map_chooses(article):
+def test_the_score_counts_descendants_and_a_press_on_the_map_plays(article):
     watched = article("contest")
     watched.until(f"{stage('contest')}.live.last === 0 && {stage('contest')}.frame")
+    reveal_map(watched)
     box = watched.page.locator("#contest-map").bounding_box()
-    watched.page.mouse.click(box["x"] + box["width"] - 40, box["y"] + box["height"] - 60)
+    spot = {"x": box["width"] - 40, "y": box["height"] - 60}
+    watched.page.locator("#contest-map").click(position=spot)
+    watched.until(f"{SCORE}.startsWith('World of seed 1: step ') && {stage('contest')}.live.last > 0")
     meal, moving = map(float, watched.get(KNOBS))
     assert meal > 5
     assert moving < -5
     changes = [f"species.you.reward.meal_coef={meal}", f"species.you.genome.action.initial_mean={moving}"]
-    watched.until(f"{stage('contest')}.live.ready && {stage('contest')}.live.last === 0")
+    watched.page.locator("#contest").get_by_role("button", name="Reset").click()
+    assert watched.page.locator("#contest-map").is_hidden()
+    for change in changes:
+        set_knob(watched, "contest", *change.split("="))
     run_to(watched, "contest", 3000)
     agents = native(watched, "contest", "contest", 3000, *changes).agents()
     lives = watched.get(

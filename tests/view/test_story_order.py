@@ -58,6 +58,10 @@ def test_a_guess_is_answered_and_a_chart_is_drawn_beside_an_arena_out_of_sight(a
     watched.page.locator("#creature input[value=yes]").check()
     watched.until("!document.querySelector('#creature .answer').hidden")
     chart = "document.querySelector('#contest-map')"
+    scroll_to(watched, "#contest h2", "end")
+    watched.until(f"{stage('contest')}.live?.ready")
+    watched.get(f"{stage('contest')}.results().push({{ seed: 1, you: 3, evolution: 5 }})")  # shows the map
+    watched.page.locator("#contest-map").wait_for(state="visible")
     scroll_to(watched, "#contest-map", "end")
     drawn = f"{chart}.getContext('2d').getImageData(0, 0, {chart}.width, {chart}.height).data.join()"
     watched.until(f"{stage('contest')}.live?.ready && {chart}.width === {chart}.clientWidth && {drawn}.match(/[1-9]/)")

@@ -41,6 +41,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   stage.play.hidden = true; // every world here counts: Begin runs it to its end, unless Reset stops it
   const range = { low: -SPAN, high: SPAN };
   const map = new Chart(section.querySelector("#contest-map")!, { ...range, label: "a meal feels like" }, { ...range, label: "moving feels like" });
+  const measured = section.querySelector<HTMLElement>("#contest-measured")!; // the map with its text, shown after the first result
   const score = section.querySelector<HTMLElement>("#contest-score")!;
   const table = section.querySelector("table")!;
   const share = section.querySelector<HTMLButtonElement>("#contest-picture")!;
@@ -69,7 +70,8 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     lines.line(course.map(([step, count]) => [step, count]), yours);
     lines.line(course.map(([step, , count]) => [step, count]), its);
     able();
-    drawMap();
+    if (results.length > 0) measured.hidden = false;
+    if (!measured.hidden) drawMap();
     const running = stage.running ? `World of seed ${stage.seed}: step ${show(stage.live.last)} of ${show(stage.aim)}. ` : "";
     score.textContent = running + verdict(results) || "No world yet.";
     table.hidden = share.hidden = results.length === 0;
@@ -112,13 +114,13 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     results = [];
     busy = false;
   };
-  buttons[0]!.addEventListener("click", () => {
-    if (busy) return;
+  const play = () => {
     clear();
     stage.begin(1);
     stage.host.querySelector(".view")!.scrollIntoView({ block: "nearest" }); // on a phone the arena is below the button
     void some(1);
-  });
+  };
+  buttons[0]!.addEventListener("click", () => busy || play());
   buttons[1]!.addEventListener("click", () => busy || results.length === 0 || void some(MORE));
   const read = bindKnobs(section, stage, () => {
     clear();
@@ -128,16 +130,20 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     map.place(event).forEach((value, i) => {
       const knob = section.querySelector<HTMLInputElement>(`input[data-path="${FEELINGS[i]}"]`)!;
       knob.value = String(value); // the slider takes the nearest value it has
-      knob.dispatchEvent(new Event("change"));
+      stage.set([FEELINGS[i]!], knob.value);
     });
     read();
+    play();
   });
   share.addEventListener("click", () => {
     const [won, lost] = tally(results);
     const headline = won > lost ? `I beat evolution ${won} : ${lost}` : won < lost ? `Evolution beat me ${lost} : ${won}` : `I drew with evolution, ${won} : ${lost}`;
     saveResult(headline, [stage.arena.scene.canvas, map.canvas]);
   });
-  section.addEventListener("reset", clear);
+  section.addEventListener("reset", () => {
+    clear();
+    measured.hidden = true; // the next reader guesses too
+  });
   section.querySelector("#contest-top")!.textContent = show(FITTEST, 1);
   Object.assign(stage, { results: () => results, course: () => course, luck });
   return {
