@@ -1,9 +1,13 @@
 """What the article does where something is missing, what it remembers, and that fingers can use it."""
 
+import json
+import re
+import runpy
 import time
 
 import pytest
-from story_page import STAGES
+from project_files import ROOT
+from story_page import STAGES, stage
 from view_page import Watched, live_server, run_live, run_server, serving, sized
 
 from hedon.view.story import PAGE
@@ -119,7 +123,7 @@ def test_what_fingers_touch_is_large_enough(article):
 
 def test_a_handout_has_a_picture_in_each_scene_and_a_line_for_each_answer(article):
     watched = article("creature")
-    watched.get("void (window.print = () => (window.printed = true))")
+    watched.get("void (window.print = () => (dispatchEvent(new Event('beforeprint')), (window.printed = true)))")
     watched.page.locator("#print").click()
     watched.until("window.printed", 120)
     sizes = watched.get("[...document.querySelectorAll('canvas.world')].map((each) => each.toDataURL().length)")
@@ -130,3 +134,33 @@ def test_a_handout_has_a_picture_in_each_scene_and_a_line_for_each_answer(articl
     lines = f"{asked}.map((each) => getComputedStyle(document.querySelector(each), '::after').content)"
     assert watched.get(lines) == ['"Your answer:"'] * 5
     assert not watched.page.locator("#contest-one").is_visible()
+    rows = """Object.fromEntries([...document.querySelectorAll('.numbers')].map((each) =>
+      [each.closest('section').id, each.querySelectorAll('tbody tr').length]))"""
+    assert watched.get(rows) == {"creature": 0, "learning": 5, "family": 5, "evolve": 4, "contest": 5}
+    assert watched.page.locator("#learning .numbers").is_visible()
+    creature = watched.page.locator("#creature .numbers").inner_text()
+    assert re.search(r"after [\d,]+ steps?, in which a meal felt like 1 and moving like 0\.$", creature)
+    cells = "[...document.querySelectorAll('#contest .numbers td')].map((cell) => cell.textContent)"
+    assert watched.get(cells) == [""] * 10, "to be filled in by hand"
+    watched.get(f"void {stage('contest')}.results().push({{ seed: 1, you: 12, evolution: 19 }})")
+    course = """{ seed: 3, learns: true, step: [0, 3072, 6200], feeling: [0, 0.1, 0.2],
+      neutral: [[0, 0, 0.1], [0, -0.1, -0.3]] }"""
+    watched.get(f"void {stage('evolve')}.courses().push({course})")
+    watched.get("void dispatchEvent(new Event('beforeprint'))")
+    assert watched.get(cells) == ["12", "19"]
+    texts = watched.get("[...document.querySelectorAll('#evolve .numbers tbody tr')].map((row) => row.innerText)")
+    assert [row.split("\t") for row in texts] == [
+        ["feeling, seed 3", "+0.00", "+0.10", "+0.20", "", ""],
+        ["gray gene, seed 3", "+0.00", "\N{MINUS SIGN}0.10", "\N{MINUS SIGN}0.30", "", ""],
+    ]
+
+
+@pytest.mark.long
+def test_the_recorded_numbers_of_the_handout_are_those_of_its_worlds():
+    record = runpy.run_path(str(ROOT / "web" / "handout.py"))
+    kept = json.loads(record["FILE"].read_text())
+    assert [record["learning"](each["moving"]) for each in kept["learning"]] == [
+        each["rates"] for each in kept["learning"]
+    ]
+    assert record["evolve"](True, 1)["feeling"] == kept["evolve"][0]["feeling"][:2]
+    assert [each["learns"] for each in kept["evolve"]] == [True, False]

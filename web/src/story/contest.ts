@@ -149,6 +149,13 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   return {
     section,
     stage,
+    numbers: () => {
+      const played = results.length > 0;
+      const [meal, moving] = FEELINGS.map((path) => (played ? show(stage.value(path)) : "____"));
+      const blank = Array.from({ length: 1 + MORE }, (_, i) => [String(i + 1), "", ""]);
+      const rows = played ? results.map(({ seed, you, evolution }) => [seed, you, evolution].map(String)) : blank;
+      return { caption: `Descendants if a meal feels like ${meal} and moving like ${moving} to your half:`, head: ["seed", "you", "evolution"], rows };
+    },
     open: async (place) => {
       clear();
       const thisTurn = turn;

@@ -1,5 +1,5 @@
 // Scene 1: a creature that the reader steers, with two meters.
-import { show, styleColor } from "../element";
+import { counted, show, styleColor } from "../element";
 import type { Coloring } from "../color";
 import { bindGuess } from "./guess";
 import { bindKnobs } from "./knob";
@@ -121,6 +121,11 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   return {
     section,
     stage,
+    numbers: () => {
+      const feels = (path: string) => show(stage.value(path));
+      const felt = `a meal felt like ${feels("food.normal.gene.initial_mean")} and moving like ${feels("genome.action.initial_mean")}`;
+      return { caption: `These are its energy, meals and reward after ${counted(stage.live.last, "step")}, in which ${felt}.`, head: [], rows: [] };
+    },
     open: (place) =>
       openStage(stage, place, () => {
         read();

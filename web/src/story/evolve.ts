@@ -6,12 +6,14 @@ import { Chart } from "./chart";
 import { histogram } from "./hero";
 import { bindKnobs } from "./knob";
 import { Pad } from "./pad";
+import recorded from "./recorded.json";
 import { openStage, type Scene, type Worlds } from "./scene";
 import { Stage } from "./stage";
 
 const STEPS = 12_288;
 const APART = 256; // steps between two points of a line
 const POINTS = 41; // of a guess
+const QUARTERS = 4; // of the plot, on the handout
 const KEPT = 11; // of these, kept in a link
 const LIMIT = 1.5; // of a histogram
 const COLORED = 0.75; // feelings at and beyond this value have the same color
@@ -94,8 +96,7 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     const [begin, end] = [course[0]!, course[course.length - 1]!];
     const guessed = pad.whole && learned ? `You drew ${signed(pad.guess[POINTS - 1]!)}. ` : "";
     const died = step[step.length - 1]! < STEPS - APART ? ` All had died by step ${show(step[step.length - 1])}.` : "";
-    const furthest = Math.max(...neutral.map((values) => Math.abs(values[values.length - 1]! - values[0]!)));
-    const beyond = Math.abs(end - begin) > furthest;
+    const beyond = Math.abs(end - begin) > Math.max(...neutral.map(change));
     const who = learned ? "The mean" : "Where nobody could learn, the mean";
     return `${guessed}${who} went from ${signed(begin)} to ${signed(end)}, ${beyond ? "further than any gray gene" : "no further than a gray gene did: this may be chance"}.${died}`;
   };
@@ -136,6 +137,14 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
   return {
     section,
     stage,
+    numbers: () => {
+      const own = done.flatMap((each) => rowsOf(`seed ${each.seed}`, each.learns, quarters(each, each.feeling), quarters(each, furthest(each))));
+      const others = recorded.evolve.flatMap((each) => rowsOf("recorded", each.learns, each.feeling.map(signed), each.neutral.map(signed)));
+      const drawn = Array.from({ length: QUARTERS + 1 }, (_, i) => pad.guess[Math.round((i * (POINTS - 1)) / QUARTERS)]!);
+      const guessed = pad.whole ? [["your drawing", ...drawn.map(signed)]] : [];
+      const head = ["steps", ...drawn.map((_, i) => show((i * STEPS) / QUARTERS))];
+      return { caption: "The mean feeling about food, and the mean of the gray gene that went furthest:", head, rows: [...guessed, ...(done.length > 0 ? own : others)] };
+    },
     open: async (place) => {
       forget();
       place.notes.get("guess")?.split("_").forEach((value, i) => pad.put((i * STEPS) / (KEPT - 1), Number(value)));
@@ -144,6 +153,26 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     },
   };
 }
+
+/** How far a mean went. */
+const change = (values: number[]): number => Math.abs(values[values.length - 1]! - values[0]!);
+
+/** The mean of the neutral gene that went furthest. */
+const furthest = ({ neutral }: Course): number[] => neutral.reduce((most, each) => (change(each) > change(most) ? each : most));
+
+/** The values of a course closest to the start, the quarters and the end of the plot; "" after the last death. */
+const quarters = ({ step }: Course, values: number[]): string[] =>
+  Array.from({ length: QUARTERS + 1 }, (_, i) => {
+    const due = (i * STEPS) / QUARTERS;
+    const at = step.findIndex((each) => each >= due - APART);
+    return at < 0 ? "" : signed(values[at]!);
+  });
+
+/** Both rows of a world on the handout. */
+const rowsOf = (world: string, learns: boolean, feeling: string[], neutral: string[]): string[][] => {
+  const name = learns ? world : `${world}, unable to learn`;
+  return [[`feeling, ${name}`, ...feeling], [`gray gene, ${name}`, ...neutral]];
+};
 
 /** A guess as it is kept in a link, with fewer points. */
 const kept = (guess: number[]): string =>

@@ -12,6 +12,7 @@ import { Stage } from "./stage";
 
 const COLORED = 1.5; // feelings at and beyond this value have the same color
 const RANGE = 3; // the plot of feelings shows -RANGE to RANGE
+const SHOWN = 5; // children on the handout
 const FIRST = 39; // the agent chosen at first; its family grows in the first world
 
 export function family(section: HTMLElement, worlds: Worlds): Scene {
@@ -115,6 +116,11 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
   return {
     section,
     stage,
+    numbers: () => {
+      const last = pairs().slice(-SHOWN);
+      const rows = last.map(([child, parent]) => [String(child.id), child.genome[meal]!.toFixed(2), parent.genome[meal]!.toFixed(2)]);
+      return { caption: "How a meal feels to the children born last, and to their parents:", head: ["child", "to the child", "to its parent"], rows };
+    },
     open: async (place) => {
       if ((await openStage(stage, place, read)) && place.notes.has("agent")) choose(Number(place.notes.get("agent")));
     },

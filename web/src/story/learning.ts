@@ -4,10 +4,13 @@ import { Chart } from "./chart";
 import { ONE_COLOR } from "./creature";
 import { bindGuess } from "./guess";
 import { bindKnobs } from "./knob";
+import recorded from "./recorded.json";
 import { openStage, type Scene, type Worlds } from "./scene";
 import { Stage } from "./stage";
 
 const ROUNDS = 80; // windows with learning
+const PRINTED = [5, 20, 40, 60, 80]; // the last rounds of each row on the handout
+const MEAL = "food.normal.gene.initial_mean";
 const MOVING = "genome.action.initial_mean";
 const PATH = 500; // length of a path [steps]
 const FEW = 5; // the answer compares this many rounds at the start and at the end
@@ -103,6 +106,13 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
   return {
     section,
     stage,
+    numbers: () => {
+      const own = meals.length > ROUNDS && { meal: stage.value(MEAL), moving: stage.value(MOVING), rates: PRINTED.map((last) => rate(last - FEW, last)) };
+      const shown = own ? [own] : recorded.learning;
+      const head = ["rounds", ...shown.map(({ meal, moving }) => `meal ${show(meal)}, moving ${show(moving)}`)];
+      const rows = PRINTED.map((last, i) => [`${last - FEW + 1}–${last}`, ...shown.map(({ rates }) => rates[i]!.toFixed(1))]);
+      return { caption: `Meals per 1,000 steps of ${own ? "your creature" : "two recorded creatures"}, and what a meal and moving felt like:`, head, rows };
+    },
     open: (place) => openStage(stage, place, read),
   };
 }

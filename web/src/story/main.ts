@@ -8,6 +8,7 @@ import { creature } from "./creature";
 import evidence from "./evidence.json";
 import { evolve } from "./evolve";
 import { family } from "./family";
+import { fillIn } from "./handout";
 import { hero } from "./hero";
 import { learning } from "./learning";
 import { type Place, placeOf } from "./link";
@@ -117,6 +118,9 @@ async function print(): Promise<void> {
   window.print();
 }
 by("print").addEventListener("click", () => void print());
+window.addEventListener("beforeprint", () => {
+  for (const { section, stage, numbers } of Object.values(scenes)) if (numbers && stage?.live) fillIn(section, numbers());
+});
 
 /** Plays the recording at the top. If it fails, its still picture and the rest of the article remain. */
 function open(): void {

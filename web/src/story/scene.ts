@@ -1,5 +1,6 @@
 // A scene of the article: its section, its stage, and how it opens at a place.
 import type { LiveWorld } from "../types";
+import type { Numbers } from "./handout";
 import type { Place } from "./link";
 import type { Stage } from "./stage";
 
@@ -10,6 +11,8 @@ export interface Scene {
   stage?: Stage;
   /** Shows the place of a link. By default the page begins the world and runs it to the step. */
   open?: (place: Place) => Promise<unknown>;
+  /** What happened in its world, for the handout. */
+  numbers?: () => Numbers;
 }
 
 /**
