@@ -232,9 +232,15 @@ def test_the_sandbox_has_worlds_that_are_those_of_python(world, article):
             watched.page.locator("#sandbox-config").click()
         taken = load_config(str(waiting.value.path()))
         assert taken.food == load_config(SCENES / "poison.toml", overrides=["food.poison.gives.energy=-2"]).food
+        set_knob(watched, "sandbox", "food.normal.gene.initial_mean", "3")
+        watched.page.locator("#sandbox-color").select_option("food")
         run_to(watched, "sandbox", 30)
+        shown = f"""[...{sandbox}.frame.id].map((id, i) =>
+          {sandbox}.camera.coloring.value({sandbox}.life(id), {sandbox}.frame, i))"""
+        assert min(watched.get(shown)) > 2, "the color is the feeling of founders about food, with a spread of 0.1"
         other = opened(article, "sandbox", address_of(watched, "sandbox"))
         assert other.get(f"{sandbox}.value('food.poison.gives.energy')") == -2
+        assert other.get("document.querySelector('#sandbox-color').value") == "food"
         with other.page.expect_download() as waiting:
             other.page.locator("#sandbox-picture").click()
         picture = waiting.value.path().read_bytes()
@@ -249,6 +255,11 @@ def test_the_chart_of_the_sandbox_begins_with_the_world_and_counts_food_and_ever
     watched.until(f"{sandbox}.course().length > 1")
     assert watched.get(f"{sandbox}.course()[0]") == [0, 60, 50, 6]
     watched.until(f"{sandbox}.live.last > 40")
+    knobs = watched.get(
+        "[...document.querySelectorAll('#sandbox [data-world=predators] input')].map((each) => each.dataset.path)"
+    )
+    both = ("species.prey.genome.action.initial_mean", "species.predator.genome.action.initial_mean")
+    assert knobs[2:] == ["food.normal.gene.initial_mean", " ".join(both)]
     steps = watched.get(f"{sandbox}.course().map(([step]) => step)")
     assert len(steps) > 2
     assert min(np.diff(steps)) >= 16

@@ -22,6 +22,7 @@ const FORMS: Record<string, RegExp> = {
   steer: /^([.fblrqe]\d{1,7})*$/,
   agent: WHOLE,
   world: /^/,
+  color: /^(energy|food|moving)$/,
   guess: /^-?\d+(\.\d+)?(_-?\d+(\.\d+)?){10}$/,
 };
 
