@@ -115,7 +115,7 @@ class Contest:
         for i, lines in enumerate(self.lines):
             counts[i, : len(lines.step)] = lines.count
         worlds = len(self.lines)
-        draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, np.random.default_rng(_SEED))])
+        draws = world_draws(worlds, np.random.default_rng(_SEED))
         totals = np.einsum("rw,wtg->rtg", draws, counts)
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.log(totals[..., 0] / totals[..., 1])

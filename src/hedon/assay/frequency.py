@@ -100,7 +100,7 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     starts = sorted(worlds)
     seeds = sorted({lines.seed for start in starts for lines in worlds[start]})
     rng = np.random.default_rng(_SEED)
-    draws = np.concatenate([np.ones((1, len(seeds))), world_draws(len(seeds), rng)])
+    draws = world_draws(len(seeds), rng)
     sums = np.zeros((len(starts), len(seeds), 5))
     for i, start in enumerate(starts):
         for lines in worlds[start]:
@@ -123,7 +123,7 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     return Frequency(
         groups=groups,
         shares=at_shares,
-        slope=bounded(slope[0], slope[1:], len(seeds)),
+        slope=bounded(slope, len(seeds)),
         crossing=Estimate(float(crossing) if in_range else np.nan, *bounds),
         line=np.stack([share, lines[0], low, high]),
         verdict=_verdict(low, high),

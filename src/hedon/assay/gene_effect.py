@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hedon.assay.resample import Floats, Ints, chance, permuted, within, world_draws, world_interval
+from hedon.assay.resample import Floats, Ints, chance, permuted, within, world_draws, world_interval, world_moments
 
 
 @dataclass(frozen=True)
@@ -46,19 +46,16 @@ def gene_effects(
     """
     deviation = within(fitness, world)
     null = within(permuted(fitness, world, rng), world)
-    indices = np.unique(world)
-    draws = world_draws(len(indices), rng)
+    draws = world_draws(len(np.unique(world)), rng)[1:]
     effects = []
     for i, gene in enumerate(genes):
         terms = within(np.stack([z[:, i], z[:, i] ** 2 / 2], axis=1), world)
         inverse = np.linalg.pinv(terms.T @ terms)
         value = inverse @ (terms.T @ deviation)
         p = chance(value, inverse @ (terms.T @ null))
-        parts = [terms[world == index] for index in indices]
-        cross_products = np.stack([x.T @ x for x in parts])
-        right = np.stack([x.T @ deviation[world == index] for x, index in zip(parts, indices, strict=True)])
-        sums = np.linalg.pinv((draws @ cross_products.reshape(len(cross_products), 4)).reshape(-1, 2, 2))
-        low, high = world_interval((sums @ (draws @ right)[..., None])[..., 0], len(indices))
+        worlds, cross_products, right = world_moments(terms, deviation, world)
+        sums = np.linalg.pinv((draws @ cross_products.reshape(worlds, 4)).reshape(-1, 2, 2))
+        low, high = world_interval((sums @ (draws @ right)[..., None])[..., 0], worlds)
         slope, curvature = ((float(value[k]), float(low[k]), float(high[k]), float(p[k])) for k in range(2))
         effects.append(GeneEffect(gene, *slope, *curvature))
     return effects

@@ -1,7 +1,6 @@
 """Intervals over worlds, and p values under the null hypothesis that genes have no effect."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,14 +19,24 @@ Ints = NDArray[np.int64]
 
 
 def world_draws(worlds: int, rng: np.random.Generator, replicates: int = REPLICATES) -> Floats:
-    """How often each world is drawn in each bootstrap sample, shape (replicates, worlds).
+    """How often each world counts in an estimate and in its bootstrap samples, shape (1 + replicates, worlds).
+
+    In the first row, which gives the estimate itself, each world counts once.
 
     Args:
         worlds: Number of worlds.
         rng: Source of random numbers.
         replicates: Number of bootstrap samples.
     """
-    return rng.multinomial(worlds, np.full(worlds, 1.0 / worlds), replicates).astype(np.float64)
+    draws = rng.multinomial(worlds, np.full(worlds, 1.0 / worlds), replicates).astype(np.float64)
+    return np.concatenate([np.ones((1, worlds)), draws])
+
+
+def world_moments(terms: Floats, deviation: Floats, world: Ints) -> tuple[int, Floats, Floats]:
+    """The number of worlds, and of each XᵀX, (worlds, p, p), and Xᵀy, (worlds, p), where X are the terms."""
+    indices = np.unique(world)
+    parts = [(terms[world == index], deviation[world == index]) for index in indices]
+    return len(indices), np.stack([x.T @ x for x, _ in parts]), np.stack([x.T @ y for x, y in parts])
 
 
 def world_interval(values: NDArray[np.float64], worlds: int) -> Floats:
@@ -65,15 +74,14 @@ class Estimate:
     high: float
 
 
-def bounded(value: float, replicates: NDArray[np.float64] | Sequence[float], worlds: int) -> Estimate:
+def bounded(values: Floats, worlds: int) -> Estimate:
     """An estimate with its interval; see `world_interval`.
 
     Args:
-        value: The estimate from all worlds.
-        replicates: The estimate from each bootstrap sample, shape (replicates,).
+        values: The estimate from each row of `world_draws`, shape (1 + replicates,).
         worlds: Number of worlds drawn.
     """
-    return Estimate(float(value), *map(float, world_interval(np.asarray(replicates), worlds)))
+    return Estimate(float(values[0]), *map(float, world_interval(values[1:], worlds)))
 
 
 def diffusion_strength(change: Floats, variation: Floats, worlds: int) -> Estimate:

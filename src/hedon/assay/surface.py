@@ -12,7 +12,16 @@ from typing import Any
 import numpy as np
 from lazy_loader import load
 
-from hedon.assay.resample import Estimate, Floats, Ints, bounded, within, world_draws, world_interval
+from hedon.assay.resample import (
+    Estimate,
+    Floats,
+    Ints,
+    bounded,
+    within,
+    world_draws,
+    world_interval,
+    world_moments,
+)
 
 interpolate: Any = load("scipy.interpolate", suppress_warning=True)  # takes a tenth of a second to load
 
@@ -79,10 +88,8 @@ class Smooth:
     def at(self, points: Floats) -> list[Estimate]:
         """Relative fitness at points within the range, shape (count, 2)."""
         basis = _basis(points, self.knots)
-        return [
-            bounded(values[0], values[1:], self.worlds)
-            for values in ((basis @ np.vstack([self.coefficients, self.draws]).T) + self.shift).tolist()
-        ]
+        surface = basis @ np.vstack([self.coefficients, self.draws]).T + self.shift
+        return [bounded(values, self.worlds) for values in surface]
 
 
 def quadratic_terms(z: Floats) -> Floats:
@@ -102,12 +109,11 @@ def fit_quadratic(z: Floats, fitness: Floats, world: Ints, rng: np.random.Genera
     """
     terms, deviation = within(quadratic_terms(z), world), within(fitness, world)
     scale = terms.std(axis=0)
-    worlds, left, right = _moments(terms / scale, deviation, world)
-    draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, rng)])
+    worlds, left, right = world_moments(terms / scale, deviation, world)
+    draws = world_draws(worlds, rng)
     coefficients = _solve(draws, left, right, np.eye(5) * _RIDGE) / scale
-    estimates = [bounded(coefficients[0, i], coefficients[1:, i], worlds) for i in range(5)]
-    optima = np.array([_maximum(row) for row in coefficients])
-    optimum = [bounded(optima[0, i], optima[1:, i], worlds) for i in range(2)]
+    estimates = [bounded(values, worlds) for values in coefficients.T]
+    optimum = [bounded(values, worlds) for values in np.array([_maximum(row) for row in coefficients]).T]
     return Quadratic(
         (estimates[0], estimates[1]),
         (estimates[2], estimates[3]),
@@ -132,10 +138,10 @@ def fit_smooth(
     knots = np.stack([_knots(low, high) for low, high in zip(*bounds, strict=True)])
     clipped = np.clip(z, *bounds)
     basis, deviation = within(_basis(clipped, knots), world), within(fitness, world)
-    worlds, left, right = _moments(basis, deviation, world)
+    worlds, left, right = world_moments(basis, deviation, world)
     penalty = _penalty(knots.shape[1] - _DEGREE - 1)
     smoothness, freedom = _choose(left.sum(axis=0), right.sum(axis=0), penalty, deviation)
-    draws = np.concatenate([np.ones((1, worlds)), world_draws(worlds, rng)])
+    draws = world_draws(worlds, rng)
     coefficients = _solve(draws, left, right, smoothness * penalty + _RIDGE * np.eye(len(penalty)))
     shift = 1.0 - coefficients @ _basis(clipped, knots).mean(axis=0)
     axes = np.stack([np.linspace(low, high, GRID) for low, high in zip(*bounds, strict=True)])
@@ -151,8 +157,8 @@ def fit_smooth(
         value=surface[0].reshape(shape),
         low=low.reshape(shape),
         high=high.reshape(shape),
-        slope=(bounded(slopes[0][0], slopes[0][1:], worlds), bounded(slopes[1][0], slopes[1][1:], worlds)),
-        optimum=(bounded(best[0, 0], best[1:, 0], worlds), bounded(best[0, 1], best[1:, 1], worlds)),
+        slope=(bounded(slopes[0], worlds), bounded(slopes[1], worlds)),
+        optimum=(bounded(best[:, 0], worlds), bounded(best[:, 1], worlds)),
         at_edge=any(i in (0, GRID - 1) for i in top),
         freedom=freedom,
         coefficients=coefficients[0],
@@ -161,13 +167,6 @@ def fit_smooth(
         knots=knots,
         worlds=worlds,
     )
-
-
-def _moments(terms: Floats, deviation: Floats, world: Ints) -> tuple[int, Floats, Floats]:
-    """The number of worlds, and XᵀX and Xᵀy of each."""
-    indices = np.unique(world)
-    parts = [(terms[world == index], deviation[world == index]) for index in indices]
-    return len(indices), np.stack([x.T @ x for x, _ in parts]), np.stack([x.T @ y for x, y in parts])
 
 
 def _solve(draws: Floats, left: Floats, right: Floats, penalty: Floats) -> Floats:
