@@ -48,7 +48,7 @@ def _missed(found: Estimate, truth: float) -> bool | None:
 
 
 def _strength(start: float) -> Callable[[np.random.Generator], bool | None]:
-    return lambda rng: _missed(_contest(rng, start).selection, 0.0)
+    return lambda rng: _missed(_contest(rng, start).result.selection, 0.0)
 
 
 def _end(rng: np.random.Generator) -> bool | None:

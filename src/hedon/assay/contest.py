@@ -76,6 +76,40 @@ class Lines:
         variance = self.share * (1 - self.share)
         return (variance[1:] + variance[:-1]) / 2 * np.diff(self.generation)
 
+    @property
+    def sums(self) -> Floats:
+        """Sums over intervals, shape (5,): Δp, pΔp, V, pV and p²V, with p at their starts and V = p(1 − p)Δg."""
+        share, change = self.share[:-1], np.diff(self.share)
+        variation = share * (1.0 - share) * np.diff(self.generation)
+        parts = (change, share * change, variation, share * variation, share**2 * variation)
+        return np.array([part.sum() for part in parts])
+
+
+@dataclass(frozen=True, eq=False)
+class AtShare:
+    """The result of two groups in worlds whose founders had one share of the first.
+
+    Attributes:
+        start: Share of the first group among the founders.
+        share: Its mean over the worlds' generations, weighted by p(1 − p); NaN if it never varied.
+        selection: Selection coefficient of the first group per generation.
+        end: Share at the end, averaged over worlds.
+        worlds: Number of worlds.
+        extinct: Number of worlds that died out; they are used for as long as they lived.
+        fixed, lost: Number of worlds in which only the first group, or only the second, was left.
+        generations: Mean generation at the end, averaged over worlds.
+    """
+
+    start: float
+    share: float
+    selection: Estimate
+    end: Estimate
+    worlds: int
+    extinct: int
+    fixed: int
+    lost: int
+    generations: float
+
 
 @dataclass(frozen=True, eq=False)
 class Contest:
@@ -84,24 +118,15 @@ class Contest:
     Attributes:
         groups: Names of the groups; all numbers refer to the first against the second.
         lines: Numbers of both groups over time, in each world.
-        selection: Selection coefficient per generation, with its interval over worlds.
-        share: Mean share of the first group at the end over worlds, with its interval.
-        start: Share of the first group at the start.
+        result: Their result in all worlds together.
         p: p value of the change of the share, from a permutation test that exchanges the groups of founders.
-        fixed, lost: Number of worlds in which only the first group, or only the second, is left.
-        generations: Mean generation at the end, averaged over worlds.
         steps: Length of each world [step].
     """
 
     groups: tuple[str, str]
     lines: tuple[Lines, ...]
-    selection: Estimate
-    share: Estimate
-    start: float
+    result: AtShare
     p: float
-    fixed: int
-    lost: int
-    generations: float
     steps: int
 
     def course(self) -> tuple[np.ndarray, Floats, Floats]:
@@ -215,22 +240,33 @@ def estimate(groups: tuple[str, str], lines: Sequence[Lines], steps: int) -> Con
         lines: Numbers over time, one entry per world.
         steps: Length of each world [step].
     """
-    rng = np.random.default_rng(_SEED)
-    worlds = len(lines)
+    start = float(np.mean([world_line.share[0] for world_line in lines]))
+    p = _exchange(lines, np.random.default_rng(_SEED))
+    return Contest(groups, tuple(lines), at_share(start, lines), p, steps)
+
+
+def at_share(start: float, lines: Sequence[Lines]) -> AtShare:
+    """The result of worlds that started with one share.
+
+    Args:
+        start: Share of the first group among the founders.
+        lines: Numbers over time, one entry per world.
+    """
+    by_seed = sorted(lines, key=lambda world_line: world_line.seed)  # sums must not depend on the order of seeds
+    _, _, total, weighted, _ = np.sum([world_line.sums for world_line in by_seed], axis=0)
     change = np.concatenate([np.diff(world_line.share) for world_line in lines])
     variation = np.concatenate([world_line.variation for world_line in lines])
     end_shares = np.array([world_line.share[-1] for world_line in lines])
-    return Contest(
-        groups=groups,
-        lines=tuple(lines),
-        selection=diffusion_strength(change, variation, worlds),
-        share=share_estimate(end_shares),
-        start=float(np.mean([world_line.share[0] for world_line in lines])),
-        p=_exchange(lines, rng),
+    return AtShare(
+        start=start,
+        share=float(weighted / total) if total > 0 else np.nan,
+        selection=diffusion_strength(change, variation, len(lines)),
+        end=share_estimate(end_shares),
+        worlds=len(lines),
+        extinct=sum(world_line.ended for world_line in lines),
         fixed=int((end_shares == 1).sum()),
         lost=int((end_shares == 0).sum()),
         generations=float(np.mean([world_line.generation[-1] for world_line in lines])),
-        steps=steps,
     )
 
 

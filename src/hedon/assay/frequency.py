@@ -18,16 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hedon.assay.contest import Lines
-from hedon.assay.resample import (
-    Estimate,
-    Floats,
-    bounded,
-    diffusion_strength,
-    share_estimate,
-    world_draws,
-    world_interval,
-)
+from hedon.assay.contest import AtShare, Lines, at_share
+from hedon.assay.resample import Estimate, Floats, bounded, world_draws, world_interval
 
 COEXIST, EXCLUDE, NONE, OPEN = "coexist", "exclude", "none", "open"
 VERDICTS = {
@@ -39,32 +31,6 @@ VERDICTS = {
 GRID = 401
 """Number of shares at which the line's interval is tested for containing 0."""
 _SEED = 20260803
-
-
-@dataclass(frozen=True, eq=False)
-class AtShare:
-    """The result of two groups in worlds that started with one share.
-
-    Attributes:
-        start: Share of the first group among the founders.
-        share: Its mean over the worlds' generations, weighted by p(1 − p); NaN if it never varied.
-        selection: Selection coefficient of the first group per generation.
-        end: Share at the end, averaged over worlds.
-        worlds: Number of worlds.
-        extinct: Number of worlds that died out; they are used for as long as they lived.
-        fixed, lost: Number of worlds in which only the first group, or only the second, was left.
-        generations: Mean generation at the end, averaged over worlds.
-    """
-
-    start: float
-    share: float
-    selection: Estimate
-    end: Estimate
-    worlds: int
-    extinct: int
-    fixed: int
-    lost: int
-    generations: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,8 +70,7 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     sums = np.zeros((len(starts), len(seeds), 5))
     for i, start in enumerate(starts):
         for lines in worlds[start]:
-            sums[i, seeds.index(lines.seed)] += _sums(lines)
-    at_shares = tuple(_at_share(start, worlds[start], sums[i]) for i, start in enumerate(starts))
+            sums[i, seeds.index(lines.seed)] += lines.sums
     totals = draws @ sums.sum(axis=0)
     change, weighted, variation, first, second = totals.T
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -122,39 +87,11 @@ def estimate_frequency(groups: tuple[str, str], worlds: Mapping[float, Sequence[
     bounds = (float(plausible[0]), float(plausible[-1])) if len(plausible) else (np.nan, np.nan)
     return Frequency(
         groups=groups,
-        shares=at_shares,
+        shares=tuple(at_share(start, worlds[start]) for start in starts),
         slope=bounded(slope, len(seeds)),
         crossing=Estimate(float(crossing) if in_range else np.nan, *bounds),
         line=np.stack([share, lines[0], low, high]),
         verdict=_verdict(low, high),
-    )
-
-
-def _sums(lines: Lines) -> Floats:
-    """Sums over the intervals of one world: Δp, pΔp, V, pV and p²V, with p at their starts and V = p(1 − p)Δg."""
-    share, change = lines.share[:-1], np.diff(lines.share)
-    variation = share * (1.0 - share) * np.diff(lines.generation)
-    parts = (change, share * change, variation, share * variation, share**2 * variation)
-    return np.array([part.sum() for part in parts])
-
-
-def _at_share(start: float, worlds: Sequence[Lines], sums: Floats) -> AtShare:
-    """The result of worlds that started with one share; `sums` contains the sums of each seed."""
-    _, _, variation, first, _ = sums.sum(axis=0)
-    end_shares = np.array([lines.share[-1] for lines in worlds])
-    mean = first / variation if variation > 0 else np.nan
-    parts = [(np.diff(lines.share), lines.variation) for lines in worlds]
-    change, varied = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return AtShare(
-        start=start,
-        share=float(mean),
-        selection=diffusion_strength(change, varied, len(worlds)),
-        end=share_estimate(end_shares),
-        worlds=len(worlds),
-        extinct=sum(lines.ended for lines in worlds),
-        fixed=int((end_shares == 1).sum()),
-        lost=int((end_shares == 0).sum()),
-        generations=float(np.mean([lines.generation[-1] for lines in worlds])),
     )
 
 

@@ -31,8 +31,10 @@ def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Se
     """
     (sample,) = samples
     contest = estimate(groups, sample_lines(sample, groups, species), sample.steps)
-    content = {"groups": list(groups), "selection": vars(contest.selection), "share": vars(contest.share)}
-    content |= {name: getattr(contest, name) for name in ("start", "p", "fixed", "lost", "generations")}
+    result = contest.result
+    content = {"groups": list(groups), "selection": vars(result.selection), "share": vars(result.end)}
+    content |= {"start": result.start, "p": contest.p}
+    content |= {name: getattr(result, name) for name in ("fixed", "lost", "generations")}
     intro = f"{groups[0]} against {groups[1]}, without mutation. {world_line(samples)}"
     figure = NamedFigure(kind, "Which group grows?", draw_contest(contest))
     return assay_answer(kind, samples, content, contest_tables(contest), intro, figure)
@@ -40,15 +42,15 @@ def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Se
 
 def contest_tables(contest: Contest) -> list[ResultTable]:
     """Tables of the result, the course of the ratio, and each world."""
-    first, second = contest.groups
+    (first, second), result = contest.groups, contest.result
     rows = [
-        estimate_row({"quantity": "selection coefficient per generation"}, contest.selection) | {"p": contest.p},
-        estimate_row({"quantity": f"share of {first} at the end"}, contest.share),
-        {"quantity": f"share of {first} at the start", "value": contest.start},
-        {"quantity": "generations", "value": contest.generations},
-        {"quantity": f"worlds with {first} alone", "value": contest.fixed},
-        {"quantity": f"worlds with {second} alone", "value": contest.lost},
-        {"quantity": "worlds", "value": len(contest.lines)},
+        estimate_row({"quantity": "selection coefficient per generation"}, result.selection) | {"p": contest.p},
+        estimate_row({"quantity": f"share of {first} at the end"}, result.end),
+        {"quantity": f"share of {first} at the start", "value": result.start},
+        {"quantity": "generations", "value": result.generations},
+        {"quantity": f"worlds with {first} alone", "value": result.fixed},
+        {"quantity": f"worlds with {second} alone", "value": result.lost},
+        {"quantity": "worlds", "value": result.worlds},
     ]
     note = (
         f"Of {first} against {second}: above 0, {first} grows faster. Its interval comes from how the share wanders "
@@ -90,7 +92,7 @@ def draw_contest(contest: Contest) -> Figure:
         for lines in contest.lines:
             left.plot(lines.step / unit, lines.share, color=PALE, linewidth=0.9)
         left.plot(step / unit, _mean_share(contest), color=BLUE, linewidth=1.8)
-        left.axhline(contest.start, color=MUTED, linewidth=0.8, linestyle="--")
+        left.axhline(contest.result.start, color=MUTED, linewidth=0.8, linestyle="--")
         left.set_ylim(0, 1)
         left.set_xlabel(name)
         head(left, f"Share of {contest.groups[0]}", "gray: worlds; blue: their mean; dashed: at the start")
@@ -99,7 +101,7 @@ def draw_contest(contest: Contest) -> Figure:
         right.fill_between(step / unit, low, high, color=PALE, alpha=0.6, where=np.isfinite(low) & np.isfinite(high))
         right.axhline(0.0, color=MUTED, linewidth=0.8)
         right.set_xlabel(name)
-        selection = contest.selection
+        selection = contest.result.selection
         head(
             right,
             "Log ratio",

@@ -30,10 +30,10 @@ def test_a_known_difference_is_found_with_its_size() -> None:
     # The log of the ratio changes by the difference of the rates of birth per step, and a generation takes one over
     # their mean: s = 2e-4 / 1e-3 per generation.
     found = contest(np.random.default_rng(1), (1.1e-3, 0.9e-3), 40)
-    assert found.selection.low <= 0.2 <= found.selection.high
-    assert found.selection.low > 0
+    assert found.result.selection.low <= 0.2 <= found.result.selection.high
+    assert found.result.selection.low > 0
     assert found.p < 0.01
-    assert found.generations == pytest.approx(3.0, abs=0.4)
+    assert found.result.generations == pytest.approx(3.0, abs=0.4)
     step, ratio, bounds = found.course()
     assert ratio[0] == 0
     assert bounds[0, -1] <= 2e-4 * step[-1] <= bounds[1, -1]
@@ -45,7 +45,7 @@ def test_equal_groups_do_not_win(share: float) -> None:
     for trial in range(trials):
         found = contest(np.random.default_rng([trial, int(100 * share)]), (1e-3, 1e-3), 10, share)
         significant += found.p < 0.05
-        missed += not found.selection.low <= 0 <= found.selection.high
+        missed += not found.result.selection.low <= 0 <= found.result.selection.high
     low, high = stats.binom.interval(0.99, trials, 0.05)
     print(f"share {share}: p < 0.05 in {significant} of {trials}, interval without 0 in {missed}")
     assert low <= significant <= high
@@ -56,9 +56,9 @@ def test_worlds_that_are_lost_count_and_add_no_noise() -> None:
     rng = np.random.default_rng(2)
     some = [lines(rng, (1e-3, 1e-3), 0.1, count=10) for _ in range(30)]
     found = estimate(("a", "b"), some, 3000)
-    assert found.lost > 5
-    assert found.lost == sum(each.share[-1] == 0 for each in some)
-    assert found.share.value == pytest.approx(0.1, abs=0.1)
+    assert found.result.lost > 5
+    assert found.result.lost == sum(each.share[-1] == 0 for each in some)
+    assert found.result.end.value == pytest.approx(0.1, abs=0.1)
     tables = {table.name: table for table in contest_tables(found)}
     assert tables["world"].rows.height == 30
     drawn = draw_contest(found).axes[0].lines
