@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.report import assay_answer, world_line, world_table
 from hedon.assay.sample import Sample
-from hedon.assay.stability import VERDICTS, Stability, judge, measure_stability
+from hedon.assay.stability import VERDICTS, Stability, judge, mean_over_worlds, measure_stability
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, MUTED, ORANGE, PALE, head, new_figure, step_unit, styled
 from hedon.report.answer import FACTORS, Answer
@@ -123,14 +123,15 @@ def draw_stability(starts: Sequence[Stability]) -> Figure:
                 step = course.step / unit
                 axes.fill_between(step, *course.null, color=PALE, alpha=0.5, linewidth=0)
                 axes.plot(step, course.mean.T, color=color, linewidth=0.7, alpha=0.6)
-                axes.plot(step, _mean(course.mean), color=color, linewidth=2.0, label=f"{start.name}: {course.verdict}")
+                axes.plot(
+                    step,
+                    mean_over_worlds(course.mean),
+                    color=color,
+                    linewidth=2.0,
+                    label=f"{start.name}: {course.verdict}",
+                )
             axes.axhline(0.0, color=MUTED, linewidth=0.8)
             axes.set_xlabel(name)
             axes.legend(loc="best")
             head(axes, f"Weight of {gene.removeprefix('w_')}", "thin: worlds; thick: mean; gray: neutral genes")
     return figure
-
-
-def _mean(values: np.ndarray) -> np.ndarray:
-    is_finite = np.isfinite(values)
-    return np.where(is_finite.any(axis=0), np.nansum(values, axis=0) / np.maximum(is_finite.sum(axis=0), 1), np.nan)

@@ -11,9 +11,9 @@ from hedon.analysis.world.record import SEED, generator
 from hedon.assay.resample import Floats
 from hedon.assay.sample import Sample
 from hedon.statistic.correction import holm
-from hedon.statistic.drift import rank_score
+from hedon.statistic.drift import rank_score, score_tests
 from hedon.statistic.interval import Interval, mean_interval
-from hedon.statistic.law import normal_above, normal_below
+from hedon.statistic.law import normal_below
 
 TIMES = 50
 """Number of intervals in a course."""
@@ -121,12 +121,11 @@ def weight_course(name: str, start: float, step: Floats, courses: Sequence[World
         stacked = np.full((len(courses), walk_count, len(step)), np.nan)
         for block, course in zip(stacked, courses, strict=True):
             block[:, : course.neutral[name].shape[1]] = course.neutral[name][:walk_count]
-        living = np.isfinite(stacked).sum(axis=0)
-        null = np.where(living > 0, np.nansum(stacked, axis=0) / np.maximum(living, 1), np.nan)
+        null = mean_over_worlds(stacked)
     rng = np.random.default_rng(SEED)
     ends = [(course.mean[name][-1], course.neutral[name][:, -1]) for course in courses]
-    scores = _known([rank_score(end, neutral, rng) for end, neutral in ends])
-    held = _known([rank_score(abs(end - start), np.abs(neutral - start), rng) for end, neutral in ends])
+    direction, _, _ = score_tests(np.array([rank_score(end, neutral, rng) for end, neutral in ends], float))
+    held = np.array([rank_score(abs(end - start), np.abs(neutral - start), rng) for end, neutral in ends], float)
     return WeightCourse(
         gene=name,
         start=start,
@@ -134,16 +133,16 @@ def weight_course(name: str, start: float, step: Floats, courses: Sequence[World
         mean=mean,
         null=np.quantile(null, (0.025, 0.975), axis=0) if walk_count else np.full((2, len(step)), np.nan),
         end=mean_interval([course.mean[name][-1] for course in courses]),
-        score=float(scores.mean()) if len(scores) else math.nan,
-        p=_two_sided(scores),
-        p_held=_below(held),
+        score=direction.effect,
+        p=direction.p,
+        p_held=_held_chance(held[np.isfinite(held)]),
     )
 
 
-def _known(scores: Sequence[float]) -> Floats:
-    """The scores without NaN, which marks genes that cannot change."""
-    values = np.array(scores, float)
-    return values[np.isfinite(values)]
+def mean_over_worlds(values: Floats) -> Floats:
+    """The mean over the first axis of the values that are not NaN; NaN if there are none."""
+    count = np.isfinite(values).sum(axis=0)
+    return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)
 
 
 def judge(starts: Sequence[Stability]) -> list[Stability]:
@@ -169,14 +168,6 @@ def _corrected(courses: Sequence[WeightCourse]) -> list[WeightCourse]:
     ]
 
 
-def _two_sided(scores: Floats) -> float:
-    return float(2.0 * normal_above(abs(_combined(scores))))
-
-
-def _below(scores: Floats) -> float:
-    return normal_below(_combined(scores))
-
-
-def _combined(scores: Floats) -> float:
-    """The standard normal score of all worlds together (Stouffer); NaN without any."""
-    return scores.sum() / math.sqrt(len(scores)) if len(scores) else math.nan
+def _held_chance(scores: Floats) -> float:
+    """The chance of such small scores, all worlds together (Stouffer); NaN without any."""
+    return normal_below(scores.sum() / math.sqrt(len(scores))) if len(scores) else math.nan
