@@ -82,8 +82,12 @@ def assay_worlds(
         part: Name of the folder of their run.
     """
     plan = RunPlan(config, seeds, steps, part, founders=founders)
-    steps_by_seed = dict.fromkeys(plan.seeds, plan.steps)
-    return Demand(plan.config, digest(plan.config), steps_by_seed, founders=founders, rules=plan.rules, name=part)
+    return _demand(plan, plan.seeds, part)
+
+
+def _demand(plan: RunPlan, seeds: Sequence[int], name: str) -> Demand:
+    steps_by_seed = dict.fromkeys(seeds, plan.steps)
+    return Demand(plan.config, digest(plan.config), steps_by_seed, 0, plan.founders, plan.networks, plan.rules, name)
 
 
 def assay_folder(kind: str, first: Demand) -> Path:
@@ -270,17 +274,12 @@ def contingency_worlds(
                 )
             past = Past(folder.resolve(), plan.parent.step, seed)
             if not demands:
-                demands.append(_continued(plan.run, fresh, "fresh"))
+                demands.append(_demand(plan.run, fresh, "fresh"))
             if plan.parent.config_digest != demands[0].digest:
                 raise AssayError(f"{brief(source)}: has other settings than {brief(sources[0])}")
-            futures = _continued(plan.run, seeds, f"seed-{seed}-at-{past.step}")
+            futures = _demand(plan.run, seeds, f"seed-{seed}-at-{past.step}")
             demands.append(replace(futures, past=past))
     return demands
-
-
-def _continued(plan: RunPlan, seeds: Sequence[int], name: str) -> Demand:
-    steps_by_seed = dict.fromkeys(seeds, plan.steps)
-    return Demand(plan.config, digest(plan.config), steps_by_seed, 0, plan.founders, plan.networks, plan.rules, name)
 
 
 def _run_and_step(source: str) -> tuple[Path, int | None]:
