@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hedon.analysis.result import ResultTable, make_table
-from hedon.assay.resample import Estimate
 from hedon.assay.sample import Sample
 from hedon.config.dump import digest
 from hedon.figure.named import NamedFigure
@@ -64,16 +63,6 @@ def world_table(rows: Sequence[Mapping[str, Any]]) -> ResultTable:
 def world_line(samples: Sequence[Sample]) -> str:
     """A sentence on how many worlds there were, how long they lived, and which died out."""
     return " ".join(sample.describe() for sample in samples)
-
-
-def estimate_row(labels: Mapping[str, Any], estimate: Estimate) -> dict[str, Any]:
-    """A table row with a value and its interval.
-
-    Args:
-        labels: Further columns, which come first.
-        estimate: The value with its interval.
-    """
-    return {**labels, "value": estimate.value, "low": estimate.low, "high": estimate.high}
 
 
 def finite_row(row: Mapping[str, Any]) -> dict[str, Any]:

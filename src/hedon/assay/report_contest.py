@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.contest import Contest, estimate, sample_lines
-from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
+from hedon.assay.report import assay_answer, finite_row, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, step_unit, styled
@@ -44,8 +44,8 @@ def contest_tables(contest: Contest) -> list[ResultTable]:
     """Tables of the result, the course of the ratio, and each world."""
     (first, second), result = contest.groups, contest.result
     rows = [
-        estimate_row({"quantity": "selection coefficient per generation"}, result.selection) | {"p": contest.p},
-        estimate_row({"quantity": f"share of {first} at the end"}, result.end),
+        {"quantity": "selection coefficient per generation", **vars(result.selection), "p": contest.p},
+        {"quantity": f"share of {first} at the end", **vars(result.end)},
         {"quantity": f"share of {first} at the start", "value": result.start},
         {"quantity": "generations", "value": result.generations},
         {"quantity": f"worlds with {first} alone", "value": result.fixed},
@@ -57,12 +57,11 @@ def contest_tables(contest: Contest) -> list[ResultTable]:
         "within worlds. p: the chance of so large a change of the share if both are alike; the founders of a world "
         "exchange their groups."
     )
-    step, ratio, bounds = contest.course()
+    step, ratio, (low, high) = contest.course()
     ratio_rows = [
-        {"step": int(step[i]), "value": float(ratio[i]), "low": float(bounds[0, i]), "high": float(bounds[1, i])}
+        finite_row({"step": int(step[i]), "value": float(ratio[i]), "low": float(low[i]), "high": float(high[i])})
         for i in np.linspace(0, len(step) - 1, _SHOWN_TIMES + 1).round().astype(int)
     ]
-    finite = [{name: value if np.isfinite(value) else None for name, value in row.items()} for row in ratio_rows]
     worlds = [
         {
             "seed": lines.seed,
@@ -77,7 +76,7 @@ def contest_tables(contest: Contest) -> list[ResultTable]:
     ]
     return [
         make_table("contest", f"{first} against {second}", rows, note),
-        make_table("ratio", f"Log ratio of the numbers of {first} and {second}, all worlds together", finite),
+        make_table("ratio", f"Log ratio of the numbers of {first} and {second}, all worlds together", ratio_rows),
         world_table(worlds),
     ]
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.contingency import Divergence, Futures, Overlap, diverged, lineages_since, measures_of, overlaps
-from hedon.assay.report import assay_answer, finite_row, world_line, world_table
+from hedon.assay.report import assay_answer, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.assay.stability import ALPHA
 from hedon.figure.named import NamedFigure
@@ -91,7 +91,7 @@ def contingency_tables(found: Sequence[Divergence], shared: Sequence[Overlap]) -
         "agents of that step were interchangeable. Permutation test, Holm over all rows."
     )
     return [
-        make_table("contingency", "How far apart the worlds end", [finite_row(row) for row in rows], note),
+        make_table("contingency", "How far apart the worlds end", rows, note),
         make_table("contingency_lineage", "Do the same agents leave descendants?", lineages, overlap_note),
     ]
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from hedon.analysis.result import ResultTable, make_table
 from hedon.assay.contest import sample_lines
 from hedon.assay.frequency import VERDICTS, Frequency, estimate_frequency
-from hedon.assay.report import assay_answer, estimate_row, finite_row, world_line, world_table
+from hedon.assay.report import assay_answer, finite_row, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, PALE, head, new_figure, styled
@@ -51,8 +51,8 @@ def frequency_tables(found: Frequency) -> list[ResultTable]:
     """Tables of slope and crossing, and of the selection coefficient at each share."""
     first, second = found.groups
     rows = [
-        estimate_row({"quantity": "slope of the selection coefficient over the share"}, found.slope),
-        estimate_row({"quantity": f"share of {first} at which neither grows"}, found.crossing),
+        {"quantity": "slope of the selection coefficient over the share", **vars(found.slope)},
+        {"quantity": f"share of {first} at which neither grows", **vars(found.crossing)},
     ]
     note = (
         f"{found.verdict}: {VERDICTS[found.verdict]}. A slope below 0 favors the rarer group. Without a value of the "

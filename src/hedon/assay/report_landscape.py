@@ -11,13 +11,16 @@ from hedon.assay.end import End, on_surface
 from hedon.assay.figure_landscape import draw_landscape
 from hedon.assay.landscape import Landscape, measure_landscape
 from hedon.assay.outcome import MEASURES
-from hedon.assay.report import assay_answer, estimate_row, world_line, world_table
+from hedon.assay.report import assay_answer, world_line, world_table
 from hedon.assay.sample import Sample
 from hedon.figure.named import NamedFigure
 from hedon.report.answer import Answer
 from hedon.report.table import format_p
 
 OUTCOMES = "founders-outcome.csv"
+_QUADRATIC = ("slope", "curvature", "interaction", "optimum")
+_SMOOTH = ("slope", "optimum", "at_edge", "freedom", "axes", "value", "low", "high")
+"""What the summary contains of each surface."""
 
 
 def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], samples: Sequence[Sample]) -> Answer:
@@ -60,27 +63,11 @@ def _landscape_json(landscape: Landscape) -> dict[str, Any]:
     """The contents of the summary besides the tables."""
     surfaces = {}
     for name, surface in landscape.surfaces.items():
-        smooth, quadratic = surface.smooth, surface.quadratic
+        values = asdict(surface)
         surfaces[name] = {
-            "mean": surface.mean,
-            "worlds": surface.worlds,
-            "flat_p": surface.flat_p,
-            "quadratic": {
-                "slope": [asdict(estimate) for estimate in quadratic.slope],
-                "curvature": [asdict(estimate) for estimate in quadratic.curvature],
-                "interaction": asdict(quadratic.interaction),
-                "optimum": [asdict(estimate) for estimate in quadratic.optimum],
-            },
-            "smooth": {
-                "slope": [asdict(estimate) for estimate in smooth.slope],
-                "optimum": [asdict(estimate) for estimate in smooth.optimum],
-                "at_edge": smooth.at_edge,
-                "freedom": smooth.freedom,
-                "axes": smooth.axes.tolist(),
-                "value": smooth.value.tolist(),
-                "low": smooth.low.tolist(),
-                "high": smooth.high.tolist(),
-            },
+            **{key: values[key] for key in ("mean", "worlds", "flat_p")},
+            "quadratic": {key: values["quadratic"][key] for key in _QUADRATIC},
+            "smooth": {key: values["smooth"][key] for key in _SMOOTH},
         }
     return {
         "founders": landscape.founders,
@@ -103,13 +90,10 @@ def _surfaces(landscape: Landscape) -> ResultTable:
         )
         for quantity, estimates in pairs:
             for gene, estimate in zip(landscape.genes, estimates, strict=True):
-                rows.append(estimate_row({"fitness": measure, "quantity": quantity, "gene": _short(gene)}, estimate))
-        rows.append(
-            estimate_row(
-                {"fitness": measure, "quantity": "interaction, quadratic", "gene": "both"},
-                surface.quadratic.interaction,
-            )
-        )
+                row = {"fitness": measure, "quantity": quantity, "gene": _short(gene)}
+                rows.append(row | vars(estimate))
+        row = {"fitness": measure, "quantity": "interaction, quadratic", "gene": "both"}
+        rows.append(row | vars(surface.quadratic.interaction))
     edges = [name for name, surface in landscape.surfaces.items() if surface.smooth.at_edge]
     note = "Fitness is relative to the mean of the own world. Intervals: bootstrap over worlds. The smooth surface "
     note += "is too low at a narrow peak, and its interval misses the true height there in two of three cases. "
@@ -172,7 +156,7 @@ def _ends(landscape: Landscape, ends: Sequence[End]) -> list[ResultTable]:
         top = float(surface.smooth.value.max())
         for (end, point), estimate in zip(surface_ends, surface.smooth.at(clipped), strict=True):
             genes = {_short(gene): value for gene, value in zip(landscape.genes, point, strict=True)}
-            row = estimate_row({"fitness": measure, "end": end.source, **genes}, estimate)
+            row = {"fitness": measure, "end": end.source, **genes, **vars(estimate)}
             rows.append(row | {"of the highest": estimate.value / top if top > 0 else None})
     note = "Relative fitness on the smooth surface; ends beyond its range count as at its edge."
     return [make_table("end", "Fitness where evolution ended", rows, note)]

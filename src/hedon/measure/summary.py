@@ -72,12 +72,12 @@ def summarize(run: Run) -> dict[str, Any]:
 
 def plain(value: Any) -> Any:
     """Converts a value for JSON: NumPy values and tuples become plain ones, and non-finite numbers become None."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, Sequence) and not isinstance(value, str):
         return [plain(item) for item in value]
-    if isinstance(value, np.generic):
-        value = value.item()
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
