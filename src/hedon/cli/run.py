@@ -146,14 +146,13 @@ def require_backend(backend: str | None) -> None:
         RunError: The backend does not exist, or cannot be used here.
     """
     from hedon import _engine
-    from hedon.config.problem import nearest
+    from hedon.config.problem import did_you_mean
     from hedon.experiment.device import EMULATED, device_problem, is_device
 
     if backend is None:
         return
     if backend not in (*_BACKENDS, EMULATED):
-        near = nearest(backend, _BACKENDS)
-        hint = f"; did you mean {near}?" if near else ""
+        hint = did_you_mean(backend, _BACKENDS)
         raise RunError(f"--backend {brief(repr(backend))}: is none of {', '.join(_BACKENDS)}{hint}")
     here = _engine.kernel.kernel_names()
     if backend in INSTRUCTION_SETS and backend not in here:

@@ -161,13 +161,12 @@ def _request(
 ) -> "tuple[tuple[Study, ...], Request]":
     # Imported here because this takes seconds, and other commands must not wait for it.
     from hedon.config import FIDELITIES
-    from hedon.config.problem import nearest
+    from hedon.config.problem import did_you_mean
     from hedon.study.catalogue import choose
     from hedon.study.request import Request
 
     if fidelity not in FIDELITIES:
-        near = nearest(fidelity, FIDELITIES)
-        hint = f"; did you mean {near}?" if near else ""
+        hint = did_you_mean(fidelity, FIDELITIES)
         raise RunsError(f"--fidelity: {fidelity!r} is not one of {', '.join(FIDELITIES)}{hint}")
     if quick and (seeds is not None or steps is not None):
         raise RunsError("--quick: has seeds and steps of its own: leave out --seeds and --steps")

@@ -15,7 +15,7 @@ from hedon.compare.match import Matched, choose_design, match
 from hedon.compare.preface import make_preface
 from hedon.compare.response import responses
 from hedon.compare.source import WorldTable
-from hedon.config.problem import format_value, nearest
+from hedon.config.problem import did_you_mean, format_value
 from hedon.figure.named import NamedFigure
 from hedon.figure.style import BLUE, INK, MUTED, head, new_figure, say_empty, styled
 from hedon.report.answer import Answer, simple_answer
@@ -66,8 +66,7 @@ def choose_factor(worlds: WorldTable, by: str | None) -> str:
             f"{worlds.name} holds worlds of one condition: name a second source, or a column with --by NAME"
         )
     if by not in known:
-        near = nearest(by, worlds.factors or known)
-        hint = f"; did you mean {near}?" if near else f" (there are {', '.join(worlds.factors or known)})"
+        hint = did_you_mean(by, worlds.factors or known, f" (there are {', '.join(worlds.factors or known)})")
         raise CompareError(f"--by {by}: is not a factor of {worlds.name}{hint}")
     return by
 

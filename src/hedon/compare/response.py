@@ -8,7 +8,7 @@ from itertools import pairwise
 import polars as pl
 
 from hedon.compare.error import CompareError
-from hedon.config.problem import nearest
+from hedon.config.problem import did_you_mean
 from hedon.ensemble.row import KEYS
 from hedon.measure.catalogue import column_measure
 from hedon.statistic.interval import ANY, Interval, mean_interval, share_interval
@@ -50,8 +50,7 @@ def responses(
     asked = [_with_mean(name, fit) for name in asked]
     for name in asked:
         if name not in fit:
-            near = nearest(name, fit)
-            hint = f"; did you mean {near}?" if near else f" (there are {', '.join(fit)})"
+            hint = did_you_mean(name, fit, f" (there are {', '.join(fit)})")
             raise CompareError(f"--only: {name!r} is not a column of numbers of the table{hint}")
     known = {name: found for name in fit if (found := column_measure(name, titles))}
     shown = asked or [name for name, found in known.items() if found.usual] or fit

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from hedon.config.channel import Channel, called, known_channels, observed_channels, recorded_channels
 from hedon.config.expression import gene_column
 from hedon.config.field import value_at
-from hedon.config.problem import nearest
+from hedon.config.problem import did_you_mean
 from hedon.config.schema.evolution import (
     FAMILY_GENES,
     LEARNING_GENES,
@@ -168,8 +168,7 @@ def choose_species(name: str | None, config: Settings) -> str:
     """
     names = list(config.species)
     if name is not None and name not in names:
-        suggestion = nearest(name, names)
-        hint = f"; did you mean {suggestion}?" if suggestion else ""
+        hint = did_you_mean(name, names)
         raise ArgumentError(f"species {brief(name)!r}: there is no such species (there are {', '.join(names)}){hint}")
     return names[0] if name is None else name
 

@@ -140,3 +140,9 @@ def nearest(name: str, names: Iterable[str], alike: float = 0.6) -> str | None:
         return None
     matches = get_close_matches(name, list(names), n=1, cutoff=alike)
     return matches[0] if matches else None
+
+
+def did_you_mean(name: str, names: Iterable[str], otherwise: str = "") -> str:
+    """The end of a message on an unknown name: "; did you mean NAME?", or `otherwise` if no valid name is close."""
+    match = nearest(name, names)
+    return f"; did you mean {match}?" if match else otherwise

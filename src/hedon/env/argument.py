@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.load import load_config, override_texts
-from hedon.config.problem import nearest
+from hedon.config.problem import did_you_mean
 from hedon.error import ArgumentError
 from hedon.experiment.argument import integer, seed_list
 from hedon.experiment.rule import pinned, rules
@@ -54,8 +54,7 @@ def driven(config: Config, species: str | Sequence[str] | None) -> tuple[str, ..
     requested = [species] if isinstance(species, str) else list(species)
     for name in requested:
         if name not in names:
-            suggestion = nearest(name, names) if isinstance(name, str) else None
-            hint = f"; did you mean {suggestion}?" if suggestion else ""
+            hint = did_you_mean(name, names) if isinstance(name, str) else ""
             listing = ", ".join(names)
             raise ArgumentError(f"species {brief(str(name))!r}: there is no such species (there are {listing}){hint}")
     if not requested or len(set(requested)) < len(requested):
@@ -106,8 +105,7 @@ def chosen(name: str, value: Any, known: Sequence[Any], *, empty: bool = False) 
     """
     if (empty and value is None) or (isinstance(value, str) and value in known):
         return value
-    suggestion = nearest(value, known) if isinstance(value, str) else None
-    hint = f"; did you mean {suggestion}?" if suggestion else ""
+    hint = did_you_mean(value, known) if isinstance(value, str) else ""
     raise ArgumentError(f"{name} = {brief(repr(value))}: must be {' or '.join(known)}{hint}")
 
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.layout import EXTRA, layouts, rule_columns
-from hedon.config.problem import nearest
+from hedon.config.problem import did_you_mean
 from hedon.config.rule_path import RULE_PATTERN
 from hedon.config.schema.species import RULE_USES
 from hedon.error import ArgumentError, HedonError
@@ -82,8 +82,7 @@ class Rule:
             )
         if not isinstance(function, FunctionType):
             function_names = [name for name, value in namespace.items() if callable(value) and not name.startswith("_")]
-            suggestion = nearest(self.source.name, function_names)
-            hint = f"; did you mean {suggestion}?" if suggestion else ""
+            hint = did_you_mean(self.source.name, function_names)
             raise self._error(f"the file has no function {self.source.name}{hint}")
         if iscoroutinefunction(function):
             raise self._error(f"{self.source.name} must be a plain function, without async")
@@ -141,8 +140,7 @@ class Rule:
         except KeyError as error:  # a field that the record does not have
             name = str(error.args[0])
             self._refuse_neutral(f"'{name}'", error)
-            suggestion = nearest(name, self._seen)
-            hint = f"; did you mean {suggestion}?" if suggestion else ""
+            hint = did_you_mean(name, self._seen)
             if name.startswith("memory_"):
                 hint = f": set reward.memory to {name.removeprefix('memory_')} or more"
             raise self._error(f"an agent has no {name}{hint}; it has {', '.join(self._seen)}") from error

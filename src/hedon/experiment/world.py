@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from hedon.config.config import Config
 from hedon.config.layout import SpeciesLayout, choose_species, layouts, store_columns
-from hedon.config.problem import nearest
+from hedon.config.problem import did_you_mean
 from hedon.error import ArgumentError, EngineError
 from hedon.experiment.world_arrays import WorldArrays
 from hedon.record.schema import Columns, columns_of
@@ -134,8 +134,7 @@ class World:
         try:
             return self._engine.view(self.index, path)
         except KeyError:
-            suggestion = nearest(str(path), self._engine.view_names())
-            hint = f"; did you mean {suggestion}?" if suggestion else ""
+            hint = did_you_mean(str(path), self._engine.view_names())
             raise ArgumentError(f"view: the state has no array {brief(repr(path))}{hint}") from None
 
     def agents(self) -> dict[str, NDArray[Any]]:

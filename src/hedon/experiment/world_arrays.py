@@ -5,7 +5,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from hedon.config.problem import nearest
+from hedon.config.problem import did_you_mean
 
 PARTS = ("", "life.", "physics.bodies.")
 """Prefixes with which an attribute is looked up, in this order."""
@@ -47,8 +47,7 @@ class WorldArrays:
         if name.startswith("_"):
             raise AttributeError(name)
         if name not in self._paths:
-            suggestion = nearest(name, self._paths)
-            hint = f"; did you mean {suggestion}?" if suggestion else ""
+            hint = did_you_mean(name, self._paths)
             raise AttributeError(f"the state has no array {name!r}{hint}")
         return self._view(self._paths[name])
 

@@ -6,7 +6,7 @@ import numpy as np
 import polars as pl
 
 from hedon.analysis.descent.genealogy import ALIVE, Genealogy, ancestry, genealogy
-from hedon.config.problem import nearest
+from hedon.config.problem import did_you_mean
 from hedon.export.table import ExportError
 from hedon.figure.style import png_bytes
 from hedon.figure.tree import draw_tree
@@ -149,8 +149,7 @@ def picture(agents: pl.DataFrame, now: int, genes: tuple[str, ...], gene: str | 
     recorded = [name for name in genes if name in agents.columns and agents[name].is_not_null().any()]
     name = gene if gene is not None else recorded[0]
     if name not in recorded:
-        suggestion = nearest(name, recorded)
-        hint = f"; did you mean {suggestion}?" if suggestion else ""
+        hint = did_you_mean(name, recorded)
         raise ExportError(f"--color {brief(name)}: there is no such gene (there are {', '.join(recorded)}){hint}")
     weight = agents[name].cast(pl.Float64).fill_null(0.0).to_numpy()
     return png_bytes(draw_tree(tree, weight, name, now))

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from hedon.analysis.result import ResultTable
 from hedon.analysis.topic import drift, life, selection, treatment, world
 from hedon.analysis.world.record import Conditions
-from hedon.config.problem import nearest
+from hedon.config.problem import did_you_mean
 from hedon.error import HedonError
 from hedon.study.verdict_table import verdict
 
@@ -41,8 +41,7 @@ def require_topics(names: Sequence[str]) -> Sequence[str]:
     """
     for name in names:
         if name not in TOPICS:
-            suggestion = nearest(name, TOPICS)
-            hint = f"; did you mean {suggestion}?" if suggestion else "."
+            hint = did_you_mean(name, TOPICS, ".")
             raise TopicError(f"there is no topic {name!r}{hint} There are: {', '.join(TOPICS)}")
     return names
 

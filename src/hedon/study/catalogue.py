@@ -9,7 +9,7 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
-from hedon.config.problem import nearest
+from hedon.config.problem import did_you_mean
 from hedon.error import HedonError
 from hedon.study.study import Study
 
@@ -87,8 +87,7 @@ def _find(name: str, studies: Mapping[str, Study], faults: Mapping[str, str]) ->
         )
     if not holders:
         items = [item.name for study in studies.values() for item in study.items]
-        suggestion = nearest(name, [*studies, *items])
-        hint = f"; did you mean {suggestion}?" if suggestion else ""
+        hint = did_you_mean(name, [*studies, *items])
         raise StudyError(
             f"there is no study or item {name!r}{hint}\nStudies: {', '.join(studies)}\nItems: {', '.join(items)}"
         )
