@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hedon.statistic.interval import SHARE, mean_interval
+from hedon.statistic.interval import SHARE, mean_bounds
 from hedon.statistic.law import normal_below, normal_quantile, t_quantile
 from hedon.statistic.minimum import FOR_INTERVAL
 
@@ -115,10 +115,7 @@ def share_estimate(shares: Floats) -> Estimate:
     Args:
         shares: Share in each world, shape (worlds,).
     """
-    interval = mean_interval(shares.tolist(), within=SHARE)
-    if interval.mean is None or interval.low is None or interval.high is None:
-        return Estimate(math.nan if interval.mean is None else interval.mean, math.nan, math.nan)
-    return Estimate(interval.mean, interval.low, interval.high)
+    return Estimate(*mean_bounds(shares, within=SHARE))
 
 
 def within(values: Floats, world: Ints) -> Floats:

@@ -56,17 +56,20 @@ def mean_interval(values: Iterable[float | None], level: float = LEVEL, within: 
     return Interval(mean, max(mean - half, within[0]), min(mean + half, within[1]), finite.size)
 
 
-def mean_bounds(values: Iterable[float | None], level: float = LEVEL) -> tuple[float, float, float]:
+def mean_bounds(
+    values: Iterable[float | None], level: float = LEVEL, within: Range = ANY
+) -> tuple[float, float, float]:
     """The mean and bounds of `mean_interval`, with NaN for missing values.
 
     Args:
         values: Value of each world; None and NaN are ignored.
         level: Confidence level.
+        within: Possible values.
 
     Returns:
         Mean, lower and upper bound.
     """
-    interval = mean_interval(values, level)
+    interval = mean_interval(values, level, within)
     mean, low, high = (
         math.nan if number is None else number for number in (interval.mean, interval.low, interval.high)
     )
