@@ -17,6 +17,7 @@ from hedon.analysis.agent.lifetime import dead_agents, mean_lifetime
 from hedon.analysis.gene.weight import last_living, weight_spreads
 from hedon.analysis.world.ledger import world_ledger
 from hedon.analysis.world.record import WorldRecord, read_worlds
+from hedon.measure.summary_key import MANIFEST_KEYS
 from hedon.measure.world_measure import measures_of, titles_of
 from hedon.record.reader import Run
 from hedon.statistic.interval import AMOUNT, mean_interval
@@ -45,22 +46,11 @@ def summarize(run: Run) -> dict[str, Any]:
     fares = {name: [_fare(world) for world in species_records] for name, species_records in species.items()}
     worlds = [
         _world(run, index, {name: species_records[index] for name, species_records in species.items()}, fares)
-        for index in _indices(run)
+        for index in range(len(run.manifest.seeds))
     ]
-    manifest = run.manifest
     means = {name: _means(species[name], fares[name]) for name in species}
     summary = {
-        "name": manifest.name,
-        "preset": manifest.preset,
-        "fidelity": manifest.fidelity,
-        "modified": manifest.modified,
-        "hedon_version": manifest.hedon_version,
-        "backend": manifest.backend,
-        "status": manifest.status,
-        "config_digest": manifest.config_digest,
-        "food_kinds": manifest.food_kinds,
-        "seeds": manifest.seeds,
-        "steps_asked": manifest.steps_asked,
+        **{key: getattr(run.manifest, key) for key in MANIFEST_KEYS},
         "steps": sum(world["steps"] for world in worlds),
         **(_several(records, worlds, means) if run.columns.several else next(iter(means.values()))),
         "measures": titles_of([run.config]),
@@ -81,10 +71,6 @@ def plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
-
-
-def _indices(run: Run) -> range:
-    return range(len(run.manifest.seeds))
 
 
 def _several(records: Sequence[WorldRecord], worlds: Sequence[Fare], means: Mapping[str, Fare]) -> dict[str, Any]:
@@ -118,16 +104,13 @@ def _means(worlds: Sequence[WorldRecord], fares: Sequence[Fare]) -> dict[str, An
 
 
 def _over_worlds(world: WorldRecord, fares: Sequence[Fare]) -> dict[str, Any]:
-    averaged = [
-        measure for measure in measures_of(world.config).values() if measure.averaged and measure.applies(world)
-    ]
-    intervals = {
-        measure.name: mean_interval((fare[measure.name] for fare in fares), within=measure.within)
-        for measure in averaged
-    }
+    averaged = [each for each in measures_of(world.config).values() if each.averaged and each.applies(world)]
     weights = {name: mean_interval(fare["weights"][name]["mean"] for fare in fares) for name in world.weight_names}
     return {
-        **{name: asdict(interval) for name, interval in intervals.items()},
+        **{
+            each.name: asdict(mean_interval((fare[each.name] for fare in fares), within=each.within))
+            for each in averaged
+        },
         "weights": {name: asdict(interval) for name, interval in weights.items()},
     }
 

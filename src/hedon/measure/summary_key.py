@@ -2,7 +2,7 @@
 
 from hedon.measure.catalogue import MEASURES
 
-_BEGIN: dict[str, str] = {
+MANIFEST_KEYS: dict[str, str] = {
     "name": "what the config is called: the preset, or its file without the ending; or null",
     "preset": "name of the preset, or null",
     "fidelity": "corrected, released or as_printed, or null",
@@ -14,8 +14,10 @@ _BEGIN: dict[str, str] = {
     "food_kinds": "names, in the order of the config",
     "seeds": "one per world",
     "steps_asked": "steps that each world was to make",
-    "steps": "steps made by all worlds together",
 }
+"""Keys whose values are copied from the manifest."""
+
+_BEGIN: dict[str, str] = {**MANIFEST_KEYS, "steps": "steps made by all worlds together"}
 
 
 def _averaged(*, everywhere: bool) -> dict[str, str]:
