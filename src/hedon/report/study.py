@@ -18,7 +18,7 @@ from hedon.report.table import table_csv
 from hedon.study.gather import Gathered
 from hedon.study.item import Item, ItemInputs
 from hedon.study.study import Study
-from hedon.study.verdict_table import verdict
+from hedon.study.verdict import verdict
 from hedon.text import count
 
 NAME = "study"

@@ -7,7 +7,7 @@ from hedon.analysis.topic import drift, life, selection, treatment, world
 from hedon.analysis.world.record import Conditions
 from hedon.config.problem import did_you_mean
 from hedon.error import HedonError
-from hedon.study.verdict_table import verdict
+from hedon.study.verdict import verdict
 
 TOPICS: dict[str, Callable[[Conditions], list[ResultTable]]] = {
     "verdict": verdict,

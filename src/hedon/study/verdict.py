@@ -7,16 +7,18 @@ of worlds. For means it cannot be answered without their spread.
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.world.extinction import species_loss, world_extinction
-from hedon.analysis.world.record import WorldRecord, by_condition
+from hedon.analysis.world.record import Conditions, WorldRecord, by_condition
 from hedon.statistic.contrast import fisher_mid_p
 from hedon.statistic.minimum import FOR_FULL_LENGTH
+from hedon.study.catalogue import installed
 from hedon.study.claim import Claim, Order
 from hedon.study.estimate import ClaimEstimate, compare, estimate
 
@@ -26,6 +28,13 @@ NO_SPREAD, NO_COUNT = "the source gives no spread", "the source gives no count"
 TOO_FEW, CROSSES = f"fewer than {FOR_FULL_LENGTH} worlds", "the interval crosses the border"
 LEVEL = 0.05
 """Significance level of the second question."""
+_NOTE = (
+    "verdict: the 95 % interval over worlds lies within the region in which the claim holds, outside of it, or "
+    "across its border. Fewer than six worlds, or shorter ones than the claim asks for, decide nothing. "
+    "against_reported is another question: whether our share differs from the source's count, by p_reported (mid-p "
+    "Fisher). That no difference is shown does not mean that there is none. Where a source gives no spread, means "
+    "cannot be compared."
+)
 _UNTESTABLE = {"mean": NO_SPREAD, "ratio": NO_SPREAD, "setting": ""}
 """Why the second question cannot be answered, by the way worlds are combined; a setting is the same in every world."""
 
@@ -65,6 +74,19 @@ class Verdict:
     region_low: float
     region_high: float
     source: str
+
+
+def verdict(conditions: Conditions, claims: Iterable[Claim | Order] | None = None) -> list[ResultTable]:
+    """The verdicts on all claims about the conditions of some worlds.
+
+    Args:
+        conditions: Worlds by condition.
+        claims: Claims to judge; None for the claims in all installed studies.
+    """
+    if claims is None:
+        claims = (claim for study in installed()[0].values() for claim in study.claims)
+    judged = verdicts((world for worlds in conditions.values() for world in worlds), claims)
+    return [make_table("verdict", "Claims about these conditions", [asdict(row) for row in judged], _NOTE)]
 
 
 def verdicts(worlds: Iterable[WorldRecord], claims: Iterable[Claim | Order]) -> list[Verdict]:
@@ -113,9 +135,8 @@ def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdic
     reason = result.reason or (CROSSES if name == UNDECIDED and len(values) else "")
     if claim.over_worlds == "setting":
         remarks = []
-    elif len(values) < FOR_FULL_LENGTH or shortfall:
-        too_few = TOO_FEW if len(values) < FOR_FULL_LENGTH else ""
-        name, reason = UNDECIDED, "; ".join(filter(None, (too_few, shortfall)))
+    elif shortcomings := _shortcomings(len(values), shortfall):
+        name, reason = UNDECIDED, shortcomings
     p, against = math.nan, _UNTESTABLE.get(claim.over_worlds, NO_COUNT)
     if claim.over_worlds == "share":
         p, against = _against_reported(claim, int(np.count_nonzero(values > 0)), len(values), 0)
@@ -140,8 +161,8 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
     value, low, high = compare(order.comparison, parts[0], parts[1], order.level) if fewest > 1 else (math.nan,) * 3
     name = place(low, high, order.low, order.high)
     reason = CROSSES if name == UNDECIDED else ""
-    if fewest < FOR_FULL_LENGTH or shortfalls:
-        name, reason = UNDECIDED, "; ".join([*([TOO_FEW] if fewest < FOR_FULL_LENGTH else []), *shortfalls])
+    if shortcomings := _shortcomings(fewest, *shortfalls):
+        name, reason = UNDECIDED, shortcomings
     condition = f"{first[0].condition} against {second[0].condition}"
     result = ClaimEstimate(value, low, high)
     return _verdict(order, condition, name, result, math.nan, NO_SPREAD, sum(map(len, parts)), [reason, *remarks])
@@ -172,8 +193,8 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
     name = place(extinction.low, extinction.high, claim.low, claim.high) if extinction.worlds else UNDECIDED
     unknown = extinction.worlds - extinction.extinct - extinction.followed
     reasons = [CROSSES if name == UNDECIDED else ""]
-    if extinction.worlds < FOR_FULL_LENGTH:
-        name, reasons = UNDECIDED, [TOO_FEW]
+    if shortcomings := _shortcomings(extinction.worlds):
+        name, reasons = UNDECIDED, [shortcomings]
     if unknown:
         reasons.append(f"{unknown} of {extinction.worlds} worlds live and end before step {claim.steps:,}")
     if unknown and not extinction.followed:
@@ -181,6 +202,11 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
     p, against = _against_reported(claim, extinction.extinct, extinction.worlds, unknown)
     share_estimate = ClaimEstimate(extinction.share, extinction.low, extinction.high)
     return _verdict(claim, condition, name, share_estimate, p, against, extinction.worlds, reasons)
+
+
+def _shortcomings(worlds: int, *shortfalls: str) -> str:
+    """Why worlds decide nothing, whatever their interval; empty if they may."""
+    return "; ".join(filter(None, (TOO_FEW if worlds < FOR_FULL_LENGTH else "", *shortfalls)))
 
 
 def _assessed(claim: Claim | Order, worlds: Sequence[WorldRecord]) -> tuple[list[WorldRecord], str, list[str]]:

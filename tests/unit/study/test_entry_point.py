@@ -9,7 +9,7 @@ import pytest
 from command import hedon as command
 
 from hedon.study.catalogue import StudyError, choose, installed
-from hedon.study.verdict_table import verdict
+from hedon.study.verdict import verdict
 
 GUIDE = Path(__file__).parents[3] / "docs/guide/study.md"
 Install = Callable[[str, str, str], None]
