@@ -14,7 +14,7 @@ from hedon.cli.main import app
 from hedon.compare.contrast import compare_answer
 from hedon.compare.error import CompareError
 from hedon.compare.length import MOST_NAMED, RunLength, step_sentence
-from hedon.compare.setting import MOST_SHOWN
+from hedon.compare.preface import MOST_SHOWN
 from hedon.compare.source import WorldTable, read_both
 
 STEPS = 256

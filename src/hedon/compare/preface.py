@@ -4,13 +4,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from hedon.check.difference import changed_line
 from hedon.compare.length import step_sentence
 from hedon.compare.match import ContrastDesign
-from hedon.compare.setting import differing_settings, setting_cautions, setting_lines
 from hedon.compare.source import CONDITION, SOURCE, WorldTable
+from hedon.config.dump import diff
 from hedon.report.markdown import escape_markdown
 from hedon.report.page import Page, PageSection
+from hedon.text import count
 
+MOST_SHOWN = 10
+"""Largest number of settings that are listed."""
+MOST_CLEAR = 3
+"""Largest number of differing settings without a caution."""
 _OF_RUNS = (SOURCE, CONDITION)
 """Factors whose values have known settings if runs hold the worlds."""
 
@@ -69,12 +75,28 @@ def make_preface(worlds: WorldTable, by: str, names: Sequence[str], design: Cont
     content |= {"conditions": labels} if labels else {}
     title, lines, cautions = "", list[str](), list[str]()
     if by in _OF_RUNS and all(name in worlds.configs for name in names):
-        rows = differing_settings(*(worlds.configs[name] for name in names))
-        lines, cautions = setting_lines(rows), setting_cautions(rows)
+        changes = diff(*(worlds.configs[name] for name in names))
+        rows = [row for row in changes if not row[0].endswith(".color")]  # colors change no world
+        lines, cautions = _setting_lines(rows), _setting_cautions(rows)
         title = f"Settings that differ, {names[0]} -> {names[1]}" if rows else ""
         content["settings"] = [{"setting": path, "values": list(values)} for path, *values in rows]
         content["setting_cautions"] = cautions
     return Preface(list(filter(None, sentences)), title, lines, cautions, content)
+
+
+def _setting_lines(rows: Sequence[tuple[str, Any, Any]]) -> list[str]:
+    """A line for each setting, as `hedon check A --against B` shows it; beyond `MOST_SHOWN`, their number."""
+    lines = [changed_line(*row) for row in rows[:MOST_SHOWN]]
+    return lines + ([f"and {count(len(rows) - MOST_SHOWN, 'other setting')}"] if len(rows) > MOST_SHOWN else [])
+
+
+def _setting_cautions(rows: Sequence[tuple[str, Any, Any]]) -> list[str]:
+    """Sentences on what a comparison of conditions that differ in these settings cannot show."""
+    if not rows:
+        return ["No setting differs: these are two samples of the same condition."]
+    if len(rows) > MOST_CLEAR:
+        return [f"{len(rows)} settings differ: the comparison cannot tell which of them matters."]
+    return []
 
 
 def _described(names: Sequence[str], labels: Sequence[str]) -> str:
