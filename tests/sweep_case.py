@@ -20,9 +20,8 @@ from hedon.ensemble.batch import WORK, batch_job
 from hedon.ensemble.batches import batch_jobs
 from hedon.ensemble.collect import collect
 from hedon.ensemble.job import Job, Outcome
-from hedon.ensemble.make import make_jobs
 from hedon.ensemble.plan import SweepFile, SweepPlan, load_plan, write_plan
-from hedon.ensemble.process import JobListener
+from hedon.ensemble.process import JobListener, make_jobs
 from hedon.ensemble.store import Store
 from hedon.experiment.plan import Moment
 from hedon.record.reader import open_run

@@ -85,7 +85,7 @@ def make_runs(jobs: "Sequence[Job]", console: "Console", threads: int = 0, ray: 
         EnsembleError: There is no such cluster.
     """
     from hedon.cli.display.job import MOST_TOLD, JobDisplay
-    from hedon.ensemble.make import make_jobs
+    from hedon.ensemble.process import make_jobs
 
     for job in jobs if len(jobs) <= MOST_TOLD else ():
         verb, worlds = "continue" if job.newest() else "begin", count(len(job.seeds), "world")

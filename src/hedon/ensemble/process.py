@@ -1,4 +1,4 @@
-"""Makes the runs of a plan, as many at a time as fill the processors, and forwards Ctrl-C and SIGTERM to them."""
+"""Runs jobs in processes, as many at a time as fill the processors, and forwards Ctrl-C and SIGTERM to them."""
 
 import signal
 import sys
@@ -14,6 +14,7 @@ from typing import Any, Generic, Protocol, TypeVar
 from hedon.ensemble.job import Job, Outcome, work
 from hedon.experiment.interrupt import SIGNALS, count_interrupts
 from hedon.experiment.plan import Moment
+from hedon.record.provenance import usable_cpus
 
 _LOOK_SECONDS = 0.2
 """Longest time between two checks for Ctrl-C [s]."""
@@ -53,6 +54,30 @@ class JobListener(Protocol[T_contra]):
     def end(self, job: T_contra, outcome: Outcome) -> None:
         """Shows how a run ended."""
         ...
+
+
+def make_jobs(
+    jobs: Sequence[T], display: JobListener[T], threads: int = 0, ray: str | None = None
+) -> dict[Path, Outcome]:
+    """Runs jobs, each in its own process; runs that were started before are continued.
+
+    Args:
+        jobs: The jobs to run.
+        display: Listener that is notified of each job's end and, on this machine, of its progress.
+        threads: Threads on this machine, or processors of a local cluster; 0 for all.
+        ray: Address of a Ray cluster; None to run on this machine.
+
+    Returns:
+        How each job ended, by the folder of its run; jobs that never started are missing.
+
+    Raises:
+        EnsembleError: Ray is not installed, or there is no cluster at the address.
+    """
+    if ray is None:
+        return make_here(jobs, threads or usable_cpus(), display)
+    from hedon.ensemble.cluster import make_on_ray
+
+    return make_on_ray(jobs, ray, display, threads)
 
 
 def make_here(jobs: Sequence[T], threads: int, display: JobListener[T]) -> dict[Path, Outcome]:
