@@ -218,11 +218,6 @@ def by_gene(agents: pl.DataFrame, a: Mapping[str, float], b: Mapping[str, float]
 def sample_lines(sample: Sample, groups: tuple[str, str], species: str) -> list[Lines]:
     """The numbers of two groups in each world of a sample.
 
-    Args:
-        sample: The worlds.
-        groups: Names of the first and the second group.
-        species: Species that competes.
-
     Raises:
         AssayError: There is no table of founders, or its groups cannot be distinguished.
     """
@@ -272,11 +267,6 @@ def at_share(start: float, lines: Sequence[Lines]) -> AtShare:
 
 def points_of(founders: Founders, groups: tuple[str, str], species: str) -> tuple[Point, Point]:
     """The genes of two groups that have one row each.
-
-    Args:
-        founders: Table of founders.
-        groups: Names of the groups.
-        species: Species whose genes are wanted.
 
     Raises:
         AssayError: A group has several rows, or lacks a gene of the other.

@@ -137,12 +137,7 @@ def descent_shares(world: WorldRecord, step: int) -> pl.DataFrame:
 
 
 def diverged(fresh: Sample, futures: Sequence[Futures]) -> list[Divergence]:
-    """Compares futures with fresh worlds, for each step from which there are futures, by species and measure.
-
-    Args:
-        fresh: The fresh worlds.
-        futures: Each world at a step, with its futures.
-    """
+    """Compares futures with fresh worlds, for each step from which there are futures, by species and measure."""
     results = []
     for step in sorted({past.step for past, _ in futures}):
         samples = [sample for past, sample in futures if past.step == step]

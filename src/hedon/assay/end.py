@@ -39,11 +39,6 @@ def read_ends(path: Path, config: Config, species: str) -> list[End]:
 
     From studies with several conditions, only rows of the config's own condition are used, if there are any.
 
-    Args:
-        path: The folder or file.
-        config: Config of the landscape.
-        species: Species to read from runs with several species.
-
     Raises:
         AssayError: There are no ends, or the file cannot be read.
         RecordError: A run cannot be read.
@@ -133,10 +128,5 @@ def _condition(row: Mapping[str, Any]) -> str:
 
 
 def on_surface(ends: Iterable[End], genes: Sequence[str]) -> list[tuple[End, tuple[float, float]]]:
-    """The ends that have both genes of a surface, with their points.
-
-    Args:
-        ends: Any ends.
-        genes: Genome columns of the surface's two genes.
-    """
+    """The ends that have both genes of a surface, with their points."""
     return [(end, (end.weights[genes[0]], end.weights[genes[1]])) for end in ends if set(genes) <= end.weights.keys()]

@@ -149,11 +149,6 @@ def _source(source: str, config: Config, species: str) -> Founders:
 def parse_shares(text: str, config: Config, species: str) -> tuple[float, ...]:
     """The shares of a group among the founders, in ascending order, from a text such as "0.05,0.5,0.95".
 
-    Args:
-        text: The shares.
-        config: Config of the worlds.
-        species: Species that competes.
-
     Raises:
         AssayError: There are fewer than two different shares, or one leaves a group without founders.
     """

@@ -20,12 +20,6 @@ _SHOWN_TIMES = 10
 def contest_answer(kind: str, groups: tuple[str, str], species: str, samples: Sequence[Sample]) -> Answer:
     """The results of finished worlds with two groups.
 
-    Args:
-        kind: Kind of assay.
-        groups: Names of the first and the second group.
-        species: Species that competes.
-        samples: The worlds.
-
     Raises:
         AssayError: There is no table of founders, or its groups cannot be distinguished.
     """

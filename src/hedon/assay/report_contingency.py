@@ -43,12 +43,7 @@ def contingency_answer(samples: Sequence[Sample]) -> Answer:
 
 
 def contingency_tables(found: Sequence[Divergence], shared: Sequence[Overlap]) -> list[ResultTable]:
-    """Tables of how far apart futures end, and of whether they have the same ancestors.
-
-    Args:
-        found: Distances between futures, compared with fresh worlds.
-        shared: Overlap of the ancestors of futures.
-    """
+    """Tables of how far apart futures end, and of whether they have the same ancestors."""
     rows = [
         {
             "step": each.step,

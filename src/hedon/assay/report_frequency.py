@@ -22,12 +22,6 @@ def frequency_answer(
 ) -> Answer:
     """The results of finished worlds with two groups, with one sample for each starting share of the first.
 
-    Args:
-        groups: Names of the first and the second group.
-        species: Species that competes.
-        shares: Starting shares of the first group.
-        samples: The worlds of each share.
-
     Raises:
         AssayError: There is no table of founders, or its groups cannot be distinguished.
     """

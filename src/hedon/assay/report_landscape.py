@@ -26,12 +26,6 @@ _SMOOTH = ("slope", "optimum", "at_edge", "freedom", "axes", "value", "low", "hi
 def landscape_answer(genes: tuple[str, str], species: str, ends: Sequence[End], samples: Sequence[Sample]) -> Answer:
     """The results of a landscape assay: the surfaces, the effect of each gene, and fitness at the ends of runs.
 
-    Args:
-        genes: Genome columns of the two genes of the surfaces.
-        species: Species that is measured.
-        ends: Ends of evolved runs.
-        samples: The worlds.
-
     Raises:
         AssayError: All worlds died out before anything could be measured.
     """

@@ -22,11 +22,6 @@ def world_draws(worlds: int, rng: np.random.Generator, replicates: int = REPLICA
     """How often each world counts in an estimate and in its bootstrap samples, shape (1 + replicates, worlds).
 
     In the first row, which gives the estimate itself, each world counts once.
-
-    Args:
-        worlds: Number of worlds.
-        rng: Source of random numbers.
-        replicates: Number of bootstrap samples.
     """
     draws = rng.multinomial(worlds, np.full(worlds, 1.0 / worlds), replicates).astype(np.float64)
     return np.concatenate([np.ones((1, worlds)), draws])

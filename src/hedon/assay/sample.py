@@ -48,10 +48,6 @@ class Sample:
 def read_samples(demands: Sequence[Demand], folder: Path) -> list[Sample]:
     """Reads the worlds of an assay from existing runs.
 
-    Args:
-        demands: The specification of the worlds.
-        folder: Folder of the runs.
-
     Raises:
         RecordError: A run cannot be read.
     """

@@ -119,11 +119,6 @@ def _as_written(asked: str, values: Mapping[str, Any]) -> str:
 def comparable(worlds: WorldTable, by: str, levels: tuple[Any, Any]) -> tuple[pl.DataFrame, pl.DataFrame, list[str]]:
     """The worlds of two conditions, restricted to the combinations of all other factors that both have.
 
-    Args:
-        worlds: The worlds.
-        by: Factor that distinguishes the conditions.
-        levels: Its two values.
-
     Returns:
         The worlds of each condition and, if they share no combination, the other factors in which they differ.
     """
@@ -275,13 +270,7 @@ def _survival_chance(groups: Sequence[pl.DataFrame], factors: Sequence[str]) -> 
 
 
 def draw_contrasts(found: Sequence[Compared], by: str, names: Sequence[str]) -> Figure:
-    """Draws the size of each effect with its 95 % interval.
-
-    Args:
-        found: The compared measures.
-        by: Factor that distinguishes the conditions.
-        names: Names of the two conditions.
-    """
+    """Draws the size of each effect with its 95 % interval."""
     with styled():
         figure = new_figure(6.4, 1.2 + 0.34 * len(found))
         axes = figure.subplots()

@@ -124,11 +124,6 @@ def _units(table: pl.DataFrame, factors: Sequence[str]) -> pl.DataFrame:
 def known_values(table: pl.DataFrame, name: str, factors: Sequence[str]) -> pl.DataFrame:
     """The known value of each seed and combination of factors; replicates of a seed with equal factors are averaged.
 
-    Args:
-        table: Worlds.
-        name: Column of the measure.
-        factors: Columns of the factors.
-
     Returns:
         Columns "seed", those of the factors, and "value".
     """

@@ -58,14 +58,7 @@ class Preface:
 
 
 def make_preface(worlds: WorldTable, by: str, names: Sequence[str], design: ContrastDesign) -> Preface:
-    """The sentences before the numbers of a comparison.
-
-    Args:
-        worlds: The worlds.
-        by: Factor that distinguishes the conditions.
-        names: Names of the two conditions.
-        design: How they are compared.
-    """
+    """The sentences before the numbers of a comparison."""
     step = step_sentence(worlds.steps, worlds.lengths)
     labels = [worlds.labels[name] for name in names if name in worlds.labels]
     pair = f"{names[1]} against {names[0]}."

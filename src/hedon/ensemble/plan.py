@@ -193,10 +193,6 @@ def write_plan(file: SweepFile, store: Store) -> SweepPlan:
     A plan that is already there is extended. Configs are written first and the plan last, so an existing plan is always
     complete. Worlds in both plans keep their batches.
 
-    Args:
-        file: Content of the sweep's file.
-        store: Where the sweep is stored.
-
     Raises:
         EnsembleError: The store contains a run, or a sweep that has another length or no world of this one; or it
             cannot be written.

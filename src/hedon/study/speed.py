@@ -31,10 +31,6 @@ def measure_speed(config: Config, threads: int) -> Speed:
     """Measures the time for one window of worlds of a condition, each on its own thread; this takes seconds.
 
     All agents exist from the first step and learn at the end; none are born in between.
-
-    Args:
-        config: Settings of the worlds.
-        threads: Number of threads for which the rate is wanted.
     """
     worlds = min(threads, MOST_WORLDS)
     count = min(TYPICAL_ALIVE, *(species.population.capacity for species in config.species.values()))

@@ -119,13 +119,7 @@ def verdicts(worlds: Iterable[WorldRecord], claims: Iterable[Claim | Order]) -> 
 
 
 def judge(claim: Claim, condition: str, worlds: Sequence[WorldRecord]) -> Verdict:
-    """Applies a claim's rule to worlds of one condition.
-
-    Args:
-        claim: The claim.
-        condition: Name of the condition.
-        worlds: Worlds of the condition.
-    """
+    """Applies a claim's rule to worlds of one condition."""
     if claim.over_worlds == "extinction":
         return _judge_extinction(claim, condition, worlds)
     used_worlds, shortfall, remarks = _assessed(claim, worlds)
