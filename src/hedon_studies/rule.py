@@ -139,9 +139,8 @@ def verdict_table(name: str, tests: Sequence[Test], note: str = "", named: int =
         }
         for test, p in zip(tests, corrected, strict=True)
     ]
-    finite = [{k: None if isinstance(v, float) and np.isnan(v) else v for k, v in row.items()} for row in rows]
     rule = f"An answer is open with fewer than {FOR_VERDICT} values, or with p (Holm) of {CHANCE:g} or more."
-    return make_table(name, "What the worlds say of the claims", finite, f"{rule} {note}".strip())
+    return make_table(name, "What the worlds say of the claims", rows, f"{rule} {note}".strip())
 
 
 def _answer(test: Test, p: float) -> str:

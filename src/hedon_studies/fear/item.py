@@ -47,6 +47,7 @@ PITFALLS = (
     Condition("damage 10, food's rays", "pitfall", _READS),
     Condition("damage 1, food's rays", "pitfall-weak", _READS),
 )
+DRIFTING = (MAIN, SQUARE, *MOUTHS[::2], FOOD[1], FROZEN[1])
 EVERY = (*FOOD, SQUARE, *MOUTHS[::2], FROZEN[1], *PITFALLS[:2])
 _LAST = (
     "last: share of worlds with all species alive at by_step (Kaplan and Meier; a world that ends earlier is censored "
@@ -163,109 +164,103 @@ def _company(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     yield make_table("sequel_groups", "Groups of prey, and distances to predators", means, "Means over frames.")
 
 
-def _item(name: str, title: str, says: str, make: partial, *conditions: Condition, frames: int = 0) -> Item:
-    return Item(name, title, says, make, conditions, SCALE, frames=frames)
-
-
 def _last(
-    name: str, question: str, conditions: tuple[Condition, ...], panels: tuple[tuple[str, str], ...] = _SOCIAL
-) -> partial:
-    return partial(draw_last, name, question, conditions, panels)
+    name: str,
+    title: str,
+    says: str,
+    question: str,
+    conditions: tuple[Condition, ...],
+    panels: tuple[tuple[str, str], ...] = _SOCIAL,
+) -> Item:
+    """The item of the weights of the agents born last in some conditions."""
+    return Item(name, title, says, partial(draw_last, name, question, conditions, panels), conditions, SCALE)
 
 
 SEQUEL: tuple[Item, ...] = (
-    _item(
+    Item(
         "sequel-history",
         "How the rewards of prey and predators evolve",
         "Mean weights of all rewards over time, of both species.",
-        partial(_courses),
-        MAIN,
-        HUNTERS,
-        SQUARE,
+        _courses,
+        (MAIN, HUNTERS, SQUARE),
+        SCALE,
     ),
-    _item(
+    _last(
         "sequel-fear",
         "Fear and social reward",
         "The weight for seeing predators often ends negative (fear); in other worlds those for seeing prey or "
         "predators end positive.",
-        _last("sequel-fear", "Which rewards for seeing others evolve in prey?", (MAIN, SQUARE)),
-        MAIN,
-        SQUARE,
+        "Which rewards for seeing others evolve in prey?",
+        (MAIN, SQUARE),
     ),
-    _item(
+    Item(
         "sequel-drift",
         "Rewards of prey against drift",
         "None of its claims: we ask which weights go further than neutral genes of the same pedigree.",
-        partial(make_drift, (MAIN, SQUARE, *MOUTHS[::2], FOOD[1], FROZEN[1]), _REWARDS, SCALE, "sequel-drift"),
-        MAIN,
-        SQUARE,
-        *MOUTHS[::2],
-        FOOD[1],
-        FROZEN[1],
+        partial(make_drift, DRIFTING, _REWARDS, SCALE, "sequel-drift"),
+        DRIFTING,
+        SCALE,
     ),
-    _item(
+    Item(
         "sequel-numbers",
         "Numbers of prey and predators",
         "None of its claims: we ask whether both last, and whether they go round in cycles.",
-        partial(_numbers),
-        MAIN,
-        HUNTERS,
+        _numbers,
+        (MAIN, HUNTERS),
+        SCALE,
     ),
-    _item(
+    Item(
         "sequel-survival",
         "Worlds that keep all their species",
         "Runs in which a species died out are left out of its figures; we count them.",
-        partial(_survival),
-        *EVERY,
-        HUNTERS,
+        _survival,
+        (*EVERY, HUNTERS),
+        SCALE,
     ),
-    _item(
+    Item(
         "sequel-deaths",
         "Causes of death",
         "None of its claims: we ask how strong selection by predators can be.",
-        partial(_deaths),
-        MAIN,
-        HUNTERS,
+        _deaths,
+        (MAIN, HUNTERS),
+        SCALE,
     ),
-    _item(
+    Item(
         "sequel-groups",
         "Groups of prey, and the nearest predator",
         "None of its claims: we ask whether rewards for seeing others show in where prey are.",
-        partial(_company),
-        MAIN,
+        _company,
+        (MAIN,),
+        SCALE,
         frames=FRAMES,
     ),
-    _item(
+    _last(
         "sequel-mouths",
         "Mouths of predators",
         "Predators that hunt better, by larger mouths, make fear stronger.",
-        _last("sequel-mouths", "Do larger mouths of predators make fear stronger?", MOUTHS),
-        *MOUTHS,
+        "Do larger mouths of predators make fear stronger?",
+        MOUTHS,
     ),
-    _item(
+    _last(
         "sequel-food",
         "Less food, and no predators",
         "With less food the weight for seeing prey is more negative.",
-        _last("sequel-food", "Does scarce food make prey dislike one another?", FOOD),
-        *FOOD,
+        "Does scarce food make prey dislike one another?",
+        FOOD,
     ),
-    _item(
+    _last(
         "sequel-frozen",
         "Predators that do not mutate",
         "A condition of its own, in which predators stay as they are.",
-        _last("sequel-frozen", "Do prey evolve otherwise where predators do not?", FROZEN),
-        *FROZEN,
+        "Do prey evolve otherwise where predators do not?",
+        FROZEN,
     ),
-    _item(
+    _last(
         "sequel-pitfall",
         "Pitfalls",
         "No fear evolves of pitfalls that cost energy but do not kill. Its program weighs food's rays there.",
-        _last(
-            "sequel-pitfall",
-            "Do agents come to fear what costs energy, and what if the weight reads food's rays?",
-            PITFALLS,
-            (("w_see_obstacle", "w_see_agent"),),
-        ),
-        *PITFALLS,
+        "Do agents come to fear what costs energy, and what if the weight reads food's rays?",
+        PITFALLS,
+        (("w_see_obstacle", "w_see_agent"),),
     ),
 )
