@@ -83,23 +83,26 @@ def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         return
     tests = named_tests(rows)
     note = missing_note(inputs, tuple(CONDITIONS.values()), SCALE)
-    yield _figure(question, rows, tests[0])
+    yield draw_rates(question, rows, tests[0])
     yield verdict_table("lifespan_verdict", tests, note)
     yield make_table("lifespan_world", "Each world: log10 of the rate over its setting", rows, shown=False)
 
 
-def _figure(question: str, rows: Sequence[dict[str, Any]], slope: Test) -> NamedFigure:
+def draw_rates(question: str, rows: Sequence[dict[str, Any]], slope: Test) -> NamedFigure:
+    """Draws the evolved rate of learning over the lifetime of agents, a point per world that has both numbers."""
+    rows = [row for row in rows if row["lifetime"] and row["rate"] is not None]
     with hedon.figure.styled():
         figure = hedon.figure.new_figure(5.6, 3.6)
         axes = figure.subplots()
         for world, color in ((CONSTANT, hedon.figure.BLUE), (CHANGING, hedon.figure.ORANGE)):
-            world_rows = [row for row in rows if row["world"] == world and row["lifetime"] and row["rate"] is not None]
-            for row in world_rows:
-                marker = "x" if row["died out"] else "o"
-                axes.plot(row["lifetime"], row["rate"], marker, color=color, markersize=4)
+            for row in rows:
+                if row["world"] == world:
+                    marker = "x" if row["died out"] else "o"
+                    axes.plot(row["lifetime"], row["rate"], marker, color=color, markersize=4)
             axes.plot([], [], "o", color=color, label=world)
         axes.axhline(0.0, linewidth=0.8)
-        axes.set_xscale("log")
+        if rows:  # an empty axis has no logarithm
+            axes.set_xscale("log")
         axes.set_xlabel("mean lifetime [step]")
         axes.set_ylabel("evolved learning rate, log10 of its factor")
         axes.legend(loc="best")

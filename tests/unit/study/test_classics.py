@@ -9,8 +9,9 @@ from command import hedon
 
 from hedon.assay import Lines
 from hedon.compare.source import read_table
+from hedon.figure.style import svg_bytes
 from hedon.statistic import FOR_VERDICT as WORLDS
-from hedon_studies.lifespan_and_plasticity.study import CHANGING, CONSTANT, named_tests
+from hedon_studies.lifespan_and_plasticity.study import CHANGING, CONSTANT, draw_rates, named_tests
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
 from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, slope_test, verdict_table
 
@@ -91,6 +92,12 @@ def test_lifespan_and_plasticity_finds_what_was_put_in() -> None:
     assert answers(*named_tests(rows(0.2, -0.1))) == [NO, NO]
     lost = [row | ({"lifetime": None, "rate": None} if row["hazard"] == 4.0 else {}) for row in rows(-0.2, 0.1)]
     assert answers(*named_tests(lost)) == [OPEN, OPEN], "24 worlds are left"
+
+
+def test_worlds_whose_agents_have_not_died_give_a_figure_without_points() -> None:
+    young = [row | {"lifetime": None} for row in rows(-0.2, 0.1)]
+    figure = draw_rates("How fast do they learn?", young, named_tests(young)[0]).figure
+    assert svg_bytes(figure)
 
 
 def test_the_rest_of_the_tests_makes_the_rule_stricter() -> None:
