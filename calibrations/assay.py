@@ -52,7 +52,7 @@ def _strength(start: float) -> Callable[[np.random.Generator], bool | None]:
 
 
 def _end(rng: np.random.Generator) -> bool | None:
-    return _missed(_contest(rng, 0.5).share, 0.5)
+    return _missed(_contest(rng, 0.5).result.end, 0.5)
 
 
 def _exchange(rng: np.random.Generator) -> bool:
