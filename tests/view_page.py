@@ -48,9 +48,9 @@ def serving(server: Any) -> Iterator[Any]:
         thread.join()
 
 
-def run_server(folder: Path) -> Server:
-    """What `hedon view RUN` serves."""
-    index = RunIndex(folder)
+def run_server(folder: Path, *others: Path) -> Server:
+    """What `hedon view RUN [OTHER...]` serves."""
+    index = RunIndex(folder, others)
     page = {"run": True, "worlds": [live_world(load_config("poison"), "poison")]}
     return Server({"page": lambda: page, "run": index.describe}, index.files)
 

@@ -99,6 +99,46 @@ def test_a_seed_that_died_out_ends_before_the_others(several, tmp_path, watch):
         assert prey == [*every.filter(seed=4, species="prey")["alive"].to_list()[:-2], None, None]
 
 
+def test_further_runs_are_drawn_over_the_first(several, run_folder, tmp_path, watch):
+    """Under the name of their folder, in lines of their own kind; a run with other species adds what it has."""
+    copy = tmp_path / "second, changed"
+    shutil.copytree(several.path, copy)
+    for path in (copy / "population").glob("*.parquet"):
+        rows = pl.read_parquet(path)
+        rows.with_columns(energy_mean=pl.col("energy_mean") + 1).write_parquet(path, compression="zstd")
+    every = several.population().sort("step")
+    steps = every["step"].unique().sort().to_list()
+    with serving(run_server(several.path, copy, run_folder)) as server:
+        watched = watch(server.link)
+        watched.get("hedon.tab('plots')")
+        watched.until(f"hedon.plots.points === {len(steps)} && hedon.plots.seeds === 6")
+        assert watched.page.get_by_label("all runs and seeds (7)").is_checked(), "several runs are given to be compared"
+        key = f"solid: run, dashed: second, changed, dotted: {run_folder}"
+        assert watched.page.locator(".runs").text_content() == key
+        step, *columns = drawn(watched, "mean energy")
+        at = [step.index(each) for each in steps]
+        energy = [
+            every.filter(seed=seed, species=species)["energy_mean"]
+            for seed in (4, 7, 9)
+            for species in ("prey", "predator")
+        ]
+        assert [[column[i] for i in at] for column in columns[4:10]] == [(each + 1).to_list() for each in energy]
+        series = f"{plot('mean energy')}.chart.series.slice(1).map(({{ width, dash }}) => [width, dash?.length ?? 0])"
+        assert watched.get(series) == [*[[1, 0]] * 4, *[[2, 2]] * 8, *[[2, 0]] * 2]
+        notes = watched.get(f"{plot('mean energy')}.content.notes().map(({{ label }}) => label)")
+        assert notes == [
+            "thin: seeds 7, 9; thick: seed 4",
+            "dashed: second, changed, seeds 4, 7, 9",
+            f"{run_folder} has no such values",
+        ]
+        with watched.page.expect_download() as download:
+            watched.page.get_by_role("button", name="CSV of mean energy").click()
+        table = pl.read_csv(download.value.path())
+        assert table.columns == ["run", "seed", "species", "step", "energy_mean"]
+        changed = table.filter(run="second, changed", seed=9, species="prey")
+        assert changed["energy_mean"].to_list() == (every.filter(seed=9, species="prey")["energy_mean"] + 1).to_list()
+
+
 def test_one_seed_offers_no_others(watch):
     with serving(live_server("small")) as server:
         watched = watch(server.link)

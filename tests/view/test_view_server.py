@@ -80,6 +80,20 @@ def test_only_the_tables_of_the_run_are_served(server, name):
     assert ask(server, f"/{server.token}/{name}")[0].status == 404
 
 
+def test_of_further_runs_only_the_curves_are_served(folder, tmp_path):
+    other = record(tmp_path / "run", 64)
+    index = RunIndex(folder, [other])
+    assert [(each["run"], each["seeds"]) for each in index.describe()["others"]] == [(str(other), [1])]
+    names = {name for name in index.files() if name.startswith("others/")}
+    assert names == {f"others/0/{path.name}" for path in (other / "population").iterdir()}
+    with pytest.raises(ViewError, match="given 2 times"):
+        RunIndex(folder, [other, other])
+    with pytest.raises(ViewError, match="5 runs: the page tells at most 4 apart"):
+        RunIndex(folder, [other] * 4)
+    with pytest.raises(RecordError, match="nowhere"):
+        RunIndex(folder, [tmp_path / "nowhere"])
+
+
 def test_another_host_name_is_refused(server):
     assert ask(server, f"/{server.token}/", host="evil.example")[0].status == 403
 

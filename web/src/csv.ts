@@ -21,6 +21,9 @@ export function csvOf(source: Source, seed: number, lives: Life[]): string {
 /** A header and rows; no cell may contain a comma. */
 export const csvTable = (names: string[], rows: string[][]): string => [names, ...rows].map((cells) => cells.join(",") + "\n").join("");
 
+/** A text as a cell. */
+export const quoted = (text: string): string => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+
 /** Makes the browser save a text, a picture or a video as a file. */
 export function save(name: string, content: string | Blob): void {
   const link = document.createElement("a");

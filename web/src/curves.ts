@@ -1,5 +1,6 @@
 // The content of a plot of columns of the series: their lines, the drift band and, optionally, a running mean and the other seeds.
 import type uPlot from "uplot";
+import { quoted } from "./csv";
 import type { Band } from "./drift";
 import { show } from "./element";
 import { SAMPLE_STEPS } from "./live";
@@ -13,6 +14,7 @@ const HEIGHT = 140;
 const TALL = 190; // of a plot of a reward weight
 const RAW = "4d"; // opacity of the raw values behind their running mean
 const OTHER = "b3"; // opacity of the lines of the other seeds
+const DASHES: [name: string, dash: number[]][] = [["dashed", [7, 4]], ["dotted", [2, 3]], ["dash-dotted", [8, 3, 2, 3]]]; // of further runs
 
 export interface Line extends Key {
   name: string; // in the series
@@ -54,13 +56,23 @@ export class Curves implements Content {
     const notes: Key[] = [];
     if (typeof this.band?.() === "object") notes.push({ label: "gray: 95 % of neutral genes (drift)", color: "--quiet" });
     if (choice.window > 1) notes.push({ label: `line: mean of ${choice.window} rows; faint: each row`, color: "--quiet" });
-    if (others.length > 0) notes.push({ label: `thin: seeds ${others.map(({ seed }) => seed).join(", ")}; thick: seed ${this.source.seed}`, color: "--quiet" });
+    const seeds = (run: string) => others.filter((each) => each.run === run).map(({ seed }) => seed).join(", ");
+    if (seeds("")) notes.push({ label: `thin: seeds ${seeds("")}; thick: seed ${this.source.seed}`, color: "--quiet" });
+    this.source.runs.forEach(({ run }, i) => {
+      if (!seeds(run)) return; // not drawn, or not read yet
+      const known = others.some((each) => each.run === run && this.lines.some(({ name }) => each.series.get(name).length > 0));
+      notes.push({ label: known ? `${dashOf(i)[0]}: ${run}, seeds ${seeds(run)}` : `${run} has no such values`, color: "--quiet" });
+    });
     return notes;
   }
 
   series(): uPlot.Series[] {
     const { lines } = this;
-    const others = this.others.flatMap(() => lines.map(({ color }): uPlot.Series => ({ stroke: color + OTHER, width: 1 })));
+    const order = this.source.runs.map(({ run }) => run);
+    const others = this.others.flatMap(({ run }) => {
+      const dash = run ? dashOf(order.indexOf(run))[1] : undefined;
+      return lines.map(({ color }): uPlot.Series => ({ stroke: color + OTHER, width: dash ? 2 : 1, dash }));
+    });
     const raw = this.smoothed ? lines.map(({ color }): uPlot.Series => ({ stroke: color + RAW, width: 2 })) : [];
     const main = lines.map(({ label, color }): uPlot.Series => ({ label, stroke: color, width: 2 }));
     const limits = this.band ? ["drift, high", "drift, low"].map((label): uPlot.Series => ({ label, stroke: "#8889", dash: [4, 4] })) : [];
@@ -105,9 +117,12 @@ export class Curves implements Content {
     const texts = lines.map(({ label }, i) => {
       const notes: string[] = [];
       if (smoothed) notes.push(`smoothed ${show(table[first + smoothed + i]![row] ?? undefined, 3)}`);
-      const elsewhere = others.map((_, k) => table[1 + k * lines.length + i]![row]).filter((value) => value != null);
-      if (elsewhere.length === 1) notes.push(`other seed ${show(elsewhere[0]!, 3)}`);
-      else if (elsewhere.length > 1) notes.push(`other seeds ${show(Math.min(...elsewhere), 3)} to ${show(Math.max(...elsewhere), 3)}`);
+      for (const run of new Set(others.map((each) => each.run))) {
+        const elsewhere = others.flatMap((each, k) => (each.run === run ? (table[1 + k * lines.length + i]![row] ?? []) : []));
+        const [low, high] = [Math.min(...elsewhere), Math.max(...elsewhere)];
+        if (elsewhere.length === 1) notes.push(`${run || "other seed"} ${show(low, 3)}`);
+        else if (elsewhere.length > 1) notes.push(`${run || "other seeds"} ${show(low, 3)} to ${show(high, 3)}`);
+      }
       const value = show(table[first + i]![row] ?? undefined, 3);
       return `${lines.length > 1 ? `${label} ` : ""}${value}${notes.length > 0 ? ` (${notes.join("; ")})` : ""}`;
     });
@@ -122,15 +137,16 @@ export class Curves implements Content {
     const groups = named ? lines.map((line) => [line]) : [lines];
     const band = this.band?.();
     const limits = typeof band === "object" ? [band.low, band.high] : [];
-    const header = ["seed", ...(named ? ["species"] : []), "step", ...groups[0]!.map(({ column }) => column), ...(limits.length > 0 ? ["drift_low", "drift_high"] : [])];
+    const runs = source.runs.length > 0; // a column tells them apart
+    const header = [...(runs ? ["run"] : []), "seed", ...(named ? ["species"] : []), "step", ...groups[0]!.map(({ column }) => column), ...(limits.length > 0 ? ["drift_low", "drift_high"] : [])];
     const table = [header.join(",")];
-    for (const { seed, series } of [{ seed: source.seed, series: source.series }, ...others]) {
+    for (const { run, seed, series } of [{ run: "", seed: source.seed, series: source.series }, ...others]) {
       for (const group of groups) {
         const columns = group.map(({ name }) => fitted(series, name));
         const drift = limits.map((values) => (series === source.series ? values : []));
         series.step.forEach((step, i) => {
           const values = [...columns, ...drift].map((column) => column[i] ?? "");
-          table.push([seed, ...(named ? [group[0]!.species] : []), step, ...values].join(","));
+          table.push([...(runs ? [quoted(run || source.title)] : []), seed, ...(named ? [group[0]!.species] : []), step, ...values].join(","));
         });
       }
     }
@@ -150,6 +166,9 @@ export class Curves implements Content {
     return this.choice.seeds ? this.source.others : [];
   }
 }
+
+/** The name and pattern of the lines of a further run. */
+export const dashOf = (run: number) => DASHES[run % DASHES.length]!;
 
 /** A column of the series, one value per row; null where it is not known. */
 function fitted(series: Series, name: string): Values {

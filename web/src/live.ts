@@ -89,6 +89,10 @@ export class Live implements Source {
     return this.world.name;
   }
 
+  get runs(): [] {
+    return [];
+  }
+
   get seeds(): number[] {
     return [this.seed];
   }

@@ -1,5 +1,5 @@
 // The plots next to the world, synchronized with the time line. Only what the layout names is plotted.
-import { Curves, type Choice, type Line } from "./curves";
+import { Curves, dashOf, type Choice, type Line } from "./curves";
 import { Density } from "./density";
 import { Distributions } from "./distribution";
 import { drift, type Band } from "./drift";
@@ -105,13 +105,20 @@ export class Plots implements View {
     whole.disabled = true;
     whole.onclick = () => this.setZoom(undefined);
     const tools = element("div", { class: "row plot-tools" }, element("label", {}, "Smoothing ", smoothing));
-    if (source.seeds.length > 1) {
+    const worlds = [source, ...source.runs].reduce((sum, { seeds }) => sum + seeds.length, 0);
+    if (worlds > 1) {
       const seeds = Object.assign(element("input"), { type: "checkbox", id: "all-seeds" });
-      seeds.onchange = () => {
+      const runs = [`solid: ${source.title}`, ...source.runs.map(({ run }, i) => `${dashOf(i)[0]}: ${run}`)];
+      const key = element("p", { class: "runs", text: runs.join(", ") });
+      const apply = () => {
         choice.seeds = seeds.checked;
+        key.hidden = !seeds.checked || source.runs.length === 0;
         if (seeds.checked) source.readOthers();
       };
-      tools.append(element("label", { class: "check" }, seeds, ` all seeds (${source.seeds.length})`));
+      seeds.onchange = apply;
+      seeds.checked = source.runs.length > 0; // several runs are given to be compared
+      apply();
+      tools.append(element("label", { class: "check" }, seeds, source.runs.length > 0 ? ` all runs and seeds (${worlds})` : ` all seeds (${worlds})`), key);
     }
     tools.append(whole);
     return tools;

@@ -34,6 +34,7 @@ export class Population {
   constructor(
     readonly world: number,
     readonly seed: number,
+    readonly run = "", // "" for the run that the page shows
   ) {}
 
   /** Adds the rows of this world from a part of the table. Parts arrive in order; a part may arrive again with more rows. */

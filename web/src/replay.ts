@@ -18,7 +18,7 @@ export class Replay implements Source {
   readonly lives = new Lives();
   readonly series: Series;
   readonly layout: Layout;
-  others: Population[] = []; // of the run's other seeds, once requested
+  others: Population[] = []; // of the run's other seeds and of further runs, once requested
   private readonly worker = new Worker(new URL("./records.worker.ts", import.meta.url), { type: "module" });
   private readonly waiting = new Map<number, (answer: Answer) => void>();
   private readonly read = new Map<string, number>(); // bytes already read, by part of a table
@@ -52,6 +52,10 @@ export class Replay implements Source {
 
   get seeds(): number[] {
     return this.index.seeds;
+  }
+
+  get runs(): RunIndex["others"] {
+    return this.index.others;
   }
 
   get seed(): number {
@@ -127,17 +131,21 @@ export class Replay implements Source {
     return answer.columns;
   }
 
-  /** Reads the populations of the run's other seeds, which are updated from then on. */
+  /** Reads the populations of the run's other seeds, which are updated from then on, and of further runs. */
   readOthers(): void {
     if (this.othersWanted) return;
     this.othersWanted = true;
     void this.inTurn(async () => {
       const others = this.seeds.map((seed, world) => new Population(world, seed)).filter(({ world }) => world !== this.world);
-      for (const part of this.index.files.population) {
-        const columns = await this.ask(part.file);
-        if (columns) for (const each of others) each.add(columns);
-      }
-      this.others = others;
+      const read = async (files: string[], worlds: Population[]) => {
+        for (const file of files) {
+          const columns = await this.ask(file);
+          if (columns) for (const each of worlds) each.add(columns);
+        }
+        this.others = [...this.others, ...worlds];
+      };
+      await read(this.index.files.population.map(({ file }) => file), others);
+      for (const { run, seeds, files } of this.runs) await read(files, seeds.map((seed, world) => new Population(world, seed, run)));
     });
   }
 
@@ -152,7 +160,7 @@ export class Replay implements Source {
         this.read.set(part.file, part.bytes);
         const columns = await this.ask(part.file);
         if (!columns) continue;
-        if (table === "population") for (const each of [this.population, ...this.others]) each.add(columns);
+        if (table === "population") for (const each of [this.population, ...this.others.filter(({ run }) => run === "")]) each.add(columns);
         else this.addLives(columns);
       }
     }

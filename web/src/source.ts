@@ -11,7 +11,8 @@ export interface Source {
   readonly title: string; // for the names of its files
   readonly seed: number;
   readonly seeds: number[]; // of all worlds in its run
-  readonly others: readonly { seed: number; series: Series }[]; // worlds of the run, as far as they have been read
+  readonly runs: { run: string; seeds: number[] }[]; // further runs, whose curves are added to the plots
+  readonly others: readonly { run: string; seed: number; series: Series }[]; // other worlds, as far as they have been read; of this run if `run` is ""
   readonly live: boolean;
   readonly obstacles: Place[][]; // their corners
   readonly first: number;
@@ -22,7 +23,7 @@ export interface Source {
   readonly series: Series;
   readonly loaded: boolean; // whether all lives recorded so far are known
   readonly relawed: number; // the step after which genes follow another law than in the layout; Infinity if there is none
-  /** Reads the series of the run's other seeds. */
+  /** Reads the series of the run's other seeds, and of further runs. */
   readOthers(): void;
   /** The moments at or before `step` and after it, as far as they are known; requests missing ones. */
   around(step: number): { before?: Frame; after?: Frame };

@@ -151,4 +151,5 @@ export interface RunIndex {
   layout: Layout;
   settings: { base: string; changed: [path: string, value: string, base: string][]; all: [path: string, value: string, meaning: string][] };
   files: { agents: Part[]; population: Part[]; frames: Part[] };
+  others: { run: string; seeds: number[]; files: string[] }[]; // further runs whose curves are drawn
 }

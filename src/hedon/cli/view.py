@@ -19,7 +19,13 @@ class ViewArgumentError(HedonError):
 
 def view(
     run: Annotated[
-        str | None, typer.Argument(metavar="RUN", help="Folder of a run; with --live a preset or a file.")
+        list[str] | None,
+        typer.Argument(
+            metavar="RUN...",
+            help="Folder of a run, and of up to three others whose curves are added to its plots; with --live a preset "
+            "or a file.",
+            show_default=False,
+        ),
     ] = None,
     live: Annotated[bool, typer.Option("--live", help="Simulate in the browser: a preset, or a file (.toml).")] = False,
     article: Annotated[
@@ -49,6 +55,7 @@ def view(
     Examples:
       hedon run baseline --frames 64 --out runs/seen
       hedon view runs/seen
+      hedon view runs/seen runs/other
       hedon view --live
       hedon view --live poison
       hedon view --story
@@ -60,25 +67,29 @@ def view(
 
     from hedon.config.load import DEFAULT_PRESET, load_config
     from hedon.view.export import export as write_site
+    from hedon.view.index import RunIndex
     from hedon.view.live import require_live
     from hedon.view.server import Server
     from hedon.view.single import write_single
     from hedon.view.story import PAGE, story
 
-    if run is None and not live and not article:
+    runs = run or []
+    if not runs and not live and not article:
         raise ViewArgumentError("give the folder of a run, --live for a world in the browser, or --story to read")
-    source = (run or DEFAULT_PRESET) if live else ""
+    if live and len(runs) > 1:
+        raise ViewArgumentError(f"--live {' '.join(runs)}: give one preset or file")
+    source = (runs[0] if runs else DEFAULT_PRESET) if live else ""
     if source:
         require_live(load_config(source), source)  # reports any problem with it here
     if export is not None and export.suffix == ".html":
-        if run is not None or live or not article:
+        if runs or live or not article:
             raise ViewArgumentError(
                 f"--export {export}: only the article alone fits into one file; give a folder instead"
             )
         size = write_single(export, story())
         typer.echo(f"wrote {printable(str(export))}, {size / 1e6:.1f} MB: open it in any browser")
         return
-    index = None if live or run is None else _index(run)
+    index = None if live or not runs else RunIndex(Path(runs[0]), [Path(other) for other in runs[1:]])
     front = PAGE if article else "index.html"
     with ThreadPoolExecutor(1) as pool:
         # Describing the worlds of all presets takes seconds; meanwhile the link and the article are available.
@@ -95,12 +106,6 @@ def view(
         _say_damage(index)
         size = write_site(export, {name: tell() for name, tell in data.items()}, index.files() if index else {})
         typer.echo(f"wrote {printable(str(export))}, {size / 1e6:.1f} MB: open its {front} through any web server")
-
-
-def _index(run: str) -> "RunIndex":
-    from hedon.view.index import RunIndex
-
-    return RunIndex(Path(run))
 
 
 def _worlds(source: str) -> list[dict[str, Any]]:

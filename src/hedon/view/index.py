@@ -1,5 +1,6 @@
 """The page's description of a run: its layout, and the files that contain its rows."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,16 +16,27 @@ from hedon.record.part import read_part
 from hedon.record.reader import Run, open_run
 from hedon.record.schema import run_tables
 from hedon.view.layout import describe
+from hedon.view.overlay import Overlay
 
 Span = tuple[int, int] | None
 """First and last step of a world in a part of the frames; None if the part has no frame of it."""
 
 
 class RunIndex:
-    """Describes one run, repeatedly while it is in progress. Parts that were read before are not read again."""
+    """Describes one run, repeatedly while it is in progress. Parts that were read before are not read again.
 
-    def __init__(self, folder: Path) -> None:
+    Args:
+        folder: Folder of the run.
+        others: Folders of further runs, whose curves the page adds to its plots.
+
+    Raises:
+        RecordError: A folder is not a run, or contains a symbolic link.
+        ViewError: There are too many further runs, or a run is given twice.
+    """
+
+    def __init__(self, folder: Path, others: Sequence[Path] = ()) -> None:
         self.folder = folder
+        self.overlay = Overlay(folder, others)
         self._spans: dict[tuple[str, int], list[Span] | None] = {}  # by name and size of a part
         open_run(folder)
 
@@ -36,7 +48,7 @@ class RunIndex:
             (steps between two), `digests`, `obstacles` (corners of each, per world), `layout`, `settings` (`base`,
             `changed` and `all`, as texts), and `files`: for each table its parts, each with `file` (relative to the
             run), `bytes` and, for frames, `worlds` (first and last step of each world in the part, or None); or
-            `damaged` if the part cannot be read.
+            `damaged` if the part cannot be read. Also `others`, the further runs, as in `Overlay.describe`.
 
         Raises:
             RecordError: The folder is not a run, or contains a symbolic link.
@@ -58,6 +70,7 @@ class RunIndex:
             "layout": describe(config),
             "settings": _settings(config),
             "files": {table: list(self._parts(run, table)) for table in TABLE_FOLDERS},
+            "others": self.overlay.describe(),
         }
 
     def damaged(self) -> list[str]:
@@ -67,9 +80,10 @@ class RunIndex:
         return [*(path.relative_to(run.path).as_posix() for path in run.damaged_parts()), *frames]
 
     def files(self) -> dict[str, Path]:
-        """The files that the page may read, by the name that it requests; no other file of the run is served."""
+        """The files that the page may read, by the name that it requests; no other file of the runs is served."""
         run = open_run(self.folder)
-        return {part["file"]: run.path / part["file"] for table in TABLE_FOLDERS for part in self._parts(run, table)}
+        own = {part["file"]: run.path / part["file"] for table in TABLE_FOLDERS for part in self._parts(run, table)}
+        return own | self.overlay.files()
 
     def _parts(self, run: Run, table: str) -> list[dict[str, Any]]:
         paths = part_paths(run.path, table)
