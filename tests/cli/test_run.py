@@ -248,4 +248,4 @@ def test_a_report_says_how_to_watch_a_run_that_has_frames(tmp_path):
         answer = answer_of("run", "small", "--steps", "64", *frames, "--out", name, cwd=tmp_path)
         assert answer.returncode == 0, answer.stderr
         page = (tmp_path / name / "report.md").read_text(encoding="utf-8")
-        assert ("run hedon view with this folder." in page) == (name == "seen")
+        assert ("run hedon view with this folder" in page) == (name == "seen")

@@ -4,6 +4,8 @@ import pytest
 from view_page import live_server, run_live, run_server, serving
 
 from hedon import Simulation, load_config
+from hedon.record.reader import open_run
+from hedon.view.moment import fragment
 
 pytest_plugins = ("view_fixture",)
 
@@ -38,7 +40,10 @@ def test_the_link_of_a_run_gives_the_same_moment(run_folder, watch):
         first.rest_at(1024)
         first.get("hedon.choose(hedon.frame.id[9])")
         first.page.locator("#color").select_option("family")
-        second = watch(first.get("location.href"))
+        link, agent = first.get("[location.href, hedon.chosen]")
+        place = fragment(open_run(run_folder), 1024, 1, agent)  # of `hedon view RUN --step 1024 --seed 1 --agent ID`
+        assert set(place[1:].split("&")) <= set(link.split("#")[1].split("&"))
+        second = watch(link)
         second.until("hedon.frame && hedon.frame.step === 1024")
         assert second.get("[hedon.chosen, hedon.playing]") == [first.get("hedon.chosen"), False]
         assert second.page.locator("#color").input_value() == "family"

@@ -9,6 +9,7 @@ import struct
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -19,10 +20,12 @@ from view_page import record, run_server, serving
 from hedon.cli.main import app
 from hedon.config.load import load_config
 from hedon.record.error import RecordError
+from hedon.record.reader import open_run
 from hedon.view import compressed
 from hedon.view.export import export
 from hedon.view.index import RunIndex
 from hedon.view.live import live_world
+from hedon.view.moment import fragment
 from hedon.view.page import ViewError, page_files
 from hedon.view.server import Server
 from hedon.view.token import kept_token, token_path
@@ -179,6 +182,20 @@ def test_a_live_world_with_a_rule_in_python_is_refused(tmp_path):
 
 def test_the_command_wants_a_run_or_a_live_world():
     assert "--live" in str(CliRunner().invoke(app, ["view"]).exception)
+
+
+def test_the_link_leads_to_a_moment(folder):
+    run = open_run(folder)
+    assert fragment(run, None, None, None) == ""
+    assert fragment(run, 64, None, 3) == "#world=0&step=64&agent=3"
+    with pytest.raises(ViewError, match=r"--step 129: the world of seed 1 ends at step 128"):
+        fragment(run, 129, None, None)
+    with pytest.raises(ViewError, match="--seed 2: the run has the seeds 1"):
+        fragment(run, None, 2, None)
+    several = replace(run, manifest=replace(run.manifest, seeds=(1, 5), steps_done=(128, 64)))
+    assert fragment(several, 64, 5, None) == "#world=1&step=64"
+    done = CliRunner().invoke(app, ["view", "--live", "--step", "3"])
+    assert "--step, --seed and --agent" in str(done.exception)
 
 
 def test_an_address_that_is_none_is_answered(server):

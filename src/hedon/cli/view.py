@@ -21,7 +21,7 @@ def view(
     run: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="RUN...",
+            metavar="RUN",
             help="Folder of a run, and of up to three others whose curves are added to its plots; with --live a preset "
             "or a file.",
             show_default=False,
@@ -31,6 +31,9 @@ def view(
     article: Annotated[
         bool, typer.Option("--story", help="The article to play with: where do rewards come from?")
     ] = False,
+    step: Annotated[int | None, typer.Option(help="Open a recorded run at this step.", min=0)] = None,
+    seed: Annotated[int | None, typer.Option(help="Show the world of this seed of the run.", min=0)] = None,
+    agent: Annotated[int | None, typer.Option(help="Choose the agent with this agent_id.", min=0)] = None,
     export: Annotated[
         Path | None,
         typer.Option(
@@ -55,6 +58,7 @@ def view(
     Examples:
       hedon run baseline --frames 64 --out runs/seen
       hedon view runs/seen
+      hedon view runs/seen --step 40000 --seed 2
       hedon view runs/seen runs/other
       hedon view --live
       hedon view --live poison
@@ -66,9 +70,11 @@ def view(
     from concurrent.futures import ThreadPoolExecutor
 
     from hedon.config.load import DEFAULT_PRESET, load_config
+    from hedon.record.reader import open_run
     from hedon.view.export import export as write_site
     from hedon.view.index import RunIndex
     from hedon.view.live import require_live
+    from hedon.view.moment import fragment
     from hedon.view.server import Server
     from hedon.view.single import write_single
     from hedon.view.story import PAGE, story
@@ -78,6 +84,10 @@ def view(
         raise ViewArgumentError("give the folder of a run, --live for a world in the browser, or --story to read")
     if live and len(runs) > 1:
         raise ViewArgumentError(f"--live {' '.join(runs)}: give one preset or file")
+    if {step, seed, agent} != {None} and (not runs or live or article or export is not None):
+        raise ViewArgumentError(
+            "--step, --seed and --agent: only with the folder of a run, without --live, --story, --export"
+        )
     source = (runs[0] if runs else DEFAULT_PRESET) if live else ""
     if source:
         require_live(load_config(source), source)  # reports any problem with it here
@@ -91,6 +101,9 @@ def view(
         return
     index = None if live or not runs else RunIndex(Path(runs[0]), [Path(other) for other in runs[1:]])
     front = PAGE if article else "index.html"
+    place = front.removeprefix("index.html")
+    if index is not None:
+        place += fragment(open_run(index.folder), step, seed, agent)
     with ThreadPoolExecutor(1) as pool:
         # Describing the worlds of all presets takes seconds; meanwhile the link and the article are available.
         scenes = pool.submit(story) if article else None
@@ -101,7 +114,7 @@ def view(
         if scenes is not None:
             data["story"] = scenes.result
         if export is None:
-            _serve(Server(data, index.files if index else dict, port), front, index, open_browser)
+            _serve(Server(data, index.files if index else dict, port), place, index, open_browser)
             return
         _say_damage(index)
         size = write_site(export, {name: tell() for name, tell in data.items()}, index.files() if index else {})
@@ -119,11 +132,11 @@ def _say_damage(index: "RunIndex | None") -> None:
         typer.echo(f"hedon: {name} is damaged, and left out", err=True)
 
 
-def _serve(server: "Server", front: str, index: "RunIndex | None", open_browser: bool) -> None:
-    """Serves until Ctrl-C."""
+def _serve(server: "Server", place: str, index: "RunIndex | None", open_browser: bool) -> None:
+    """Serves until Ctrl-C. The link ends with `place`."""
     import webbrowser
 
-    link = server.link + (front if front != "index.html" else "")
+    link = server.link + place
     typer.echo(f"hedon: {link}")
     typer.echo("Open this link in a browser on this machine. Ctrl-C ends.")
     _say_damage(index)

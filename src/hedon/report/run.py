@@ -34,6 +34,7 @@ from hedon.report.figure import WORLD
 from hedon.report.markdown import escape_markdown
 from hedon.report.page import FigureFile, Page, PageSection, describe_worlds, versions
 from hedon.report.topic import TOPICS, Tell, tell_nobody
+from hedon.report.watch import how_to_watch
 from hedon.statistic.minimum import FOR_INTERVAL
 from hedon.study.catalogue import reported_figures
 from hedon.text import brief
@@ -189,7 +190,7 @@ def _world(run: Run, snapshot: Snapshot) -> NamedFigure:
     named = WORLD.drawn(draw_world(snapshot, colors, [] if focus is None else [focus]))
     if not run.manifest.frames:
         return named
-    return replace(named, caption=f"{named.caption} To watch how it got there, run hedon view with this folder.")
+    return replace(named, caption=f"{named.caption} {how_to_watch(run, snapshot.seed)}")
 
 
 def _condition_of(run: Run, analysis: Analysis) -> str | None:
