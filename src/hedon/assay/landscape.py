@@ -108,6 +108,12 @@ def spread_founders(config: Config, spread: Spread, species: str, rows: int = RO
     """A table of genomes of one species, spread independently over all its genes; equal arguments give equal tables.
 
     Genomes of other species are drawn from the config's distributions.
+
+    Args:
+        config: Config of the worlds.
+        spread: The distribution of each gene.
+        species: The species whose genes are spread.
+        rows: Number of genomes.
     """
     prefix = f"{species}." if len(config.species) > 1 else ""
     columns = [prefix + name for name in layouts(config)[species].gene_names]

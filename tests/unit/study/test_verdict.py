@@ -231,7 +231,7 @@ def test_the_lifespan_is_that_of_the_hazard() -> None:
     (rule,) = [c for c in CLAIMS if c.name == "lifespan"]
     hazard = load_config("baseline").species["agent"].hazard
     expected = math.log(1 - hazard.beta_age / hazard.alpha_age * math.log(0.05)) / hazard.beta_age
-    world = SimpleNamespace(own=load_config("baseline").species["agent"])
+    world = SimpleNamespace(species_config=load_config("baseline").species["agent"])
     assert rule.measure(world) == pytest.approx(expected, rel=1e-6)  # pyright: ignore[reportArgumentType]
     assert 1.0e6 < expected < 1.1e6
 
