@@ -1,12 +1,14 @@
 """Compiles the CUDA part, and compares what the compiler says of each kernel, and what its machine code costs, with the
 tables that are kept.
 
-`python tests/cuda.py [--write]`, with the compiler of the package `nvidia-cuda-nvcc`. No device is needed, and none
-is used. Machine code is made anew only where the engine's sources or the compiler changed: it takes two minutes.
+`python tests/cuda.py [--write]`, with the compiler of the package `nvidia-cuda-nvcc`; with `--variants`, every variant
+of the kernels instead of the one that the library has. No device is needed, and none is used. Machine code is made anew
+only where the engine's sources or the compiler changed: it takes two minutes for each variant.
 """
 
 import hashlib
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -22,36 +24,57 @@ from cuda_cost import count_costs, read_code  # noqa: E402
 BUILT = ROOT / "build" / "cuda"
 TABLE = ROOT / "tests" / "data" / "cuda_kernels.json"
 COSTS = ROOT / "tests" / "data" / "cuda_cost.json"
+VARIANTS = ROOT / "tests" / "data" / "cuda_variants.json"
 COST_SLACK = 0.15
-THREADS = 512
 # Of one multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, technical specifications.
 REGISTERS, RESIDENT_THREADS, SHARED_BYTES, SHARED_RESERVED = 65536, 2048, 228 * 1024, 1024
-# Shared memory that is asked for at a launch: `StepWorlds::FLOATS`; an update of 95 inputs (`learning_layout.h`).
-SHARED = {"StepWorlds": 32 * 2 * 64 * 4, "LearnWorlds": 223_808}
 SLACK = 8  # registers: another version of the compiler may take a few more or fewer
+LAUNCH = """
+#include "cuda/learning_layout.h"
+#include <cstdio>
+int main() {
+  using namespace hedon;
+  printf("%d %d %d", BLOCK_THREADS, BLOCK_THREADS / 16 * 2 * HIDDEN * 4, learning_layout(params_of(95)).total * 4);
+}
+"""
+"""Prints the threads of a block, and the bytes of shared memory that a launch asks for: `StepWorlds::FLOATS`, and an
+update of 95 inputs."""
+Launch = tuple[int, dict[str, int]]
 
 
-def resident_blocks(registers: int, shared: int) -> int:
+def launch_sizes(variant: str, folder: Path) -> Launch:
+    """Threads of a block, and bytes of shared memory by kernel."""
+    program = folder / "launch"
+    compiler = os.environ.get("CXX") or "c++"
+    options = ["-std=c++20", build.variant_option(variant), f"-I{ROOT / 'engine'}", "-x", "c++", "-", "-o"]
+    subprocess.run([compiler, *options, str(program)], input=LAUNCH, text=True, check=True)
+    answer = subprocess.run([str(program)], capture_output=True, text=True, check=True).stdout
+    threads, step, learn = map(int, answer.split())
+    return threads, {"StepWorlds": step, "LearnWorlds": learn}
+
+
+def resident_blocks(registers: int, shared: int, threads: int) -> int:
     """Blocks of a kernel that one multiprocessor holds at a time; registers are given in steps of 8 a thread."""
-    by_registers = REGISTERS // (-(-registers // 8) * 8 * THREADS)
-    return min(by_registers, RESIDENT_THREADS // THREADS, SHARED_BYTES // (shared + SHARED_RESERVED))
+    by_registers = REGISTERS // (-(-registers // 8) * 8 * threads)
+    return min(by_registers, RESIDENT_THREADS // threads, SHARED_BYTES // (shared + SHARED_RESERVED))
 
 
-def read_kernels(report: str) -> dict[str, dict[str, int]]:
+def read_kernels(report: str, launch: Launch) -> dict[str, dict[str, int]]:
     """What `ptxas -v` says of each kernel, by the name of its functor."""
+    threads, shared_bytes = launch
     kernels = {}
     pattern = (
         r"Compiling entry function '\w*run_kernelINS_\d+(\w+?)EEEvT_'.*?(\d+) bytes stack frame, (\d+) bytes spill "
         r"stores, (\d+) bytes spill loads\n.*?Used (\d+) registers"
     )
     for name, stack, stores, loads, registers in re.findall(pattern, report, re.DOTALL):
-        shared = SHARED.get(name, 0)
+        shared = shared_bytes.get(name, 0)
         kernels[name] = {
             "registers": int(registers),
             "stack": int(stack),
             "spills": int(stores) + int(loads),
             "shared": shared,
-            "blocks": resident_blocks(int(registers), shared),
+            "blocks": resident_blocks(int(registers), shared, threads),
         }
     return kernels
 
@@ -90,23 +113,25 @@ def dearer(found: dict[str, dict[str, float]], kept: dict[str, dict[str, float]]
     return out
 
 
-def compile_kernels(nvcc: Path) -> tuple[Path, str]:
-    """Machine code of all kernels, and what the compiler says of them.
+def compile_kernels(nvcc: Path, variant: str) -> Path:
+    """A folder with the machine code of all kernels, `device.cubin`, and what the compiler says of them, `report.txt`.
 
     Raises:
         build.BuildError: It fails, or warns.
     """
     source = ROOT / "engine" / "cuda" / "device.cu"
-    options = build.command(nvcc, "-cubin", "-lineinfo", "-Xptxas=-v", "-Werror=all-warnings")
+    options = build.command(
+        nvcc, "-cubin", "-lineinfo", "-Xptxas=-v", "-Werror=all-warnings", build.variant_option(variant)
+    )
     version = subprocess.run([str(nvcc), "--version"], capture_output=True, text=True, check=True).stdout
     digest = hashlib.sha256(repr((options, version)).encode())
     for path in sorted((ROOT / "engine").rglob("*")):
         if path.suffix in {".h", ".cu"}:
             digest.update(repr((str(path), path.read_bytes())).encode())
-    kept = BUILT / digest.hexdigest()[:16]
+    kept = BUILT / variant / digest.hexdigest()[:16]
     binary, report = kept / "device.cubin", kept / "report.txt"
     if not report.exists():
-        shutil.rmtree(BUILT, ignore_errors=True)
+        shutil.rmtree(BUILT / variant, ignore_errors=True)
         kept.mkdir(parents=True)
         done = subprocess.run(
             [*options, "-o", str(binary), str(source)], stderr=subprocess.PIPE, text=True, check=False
@@ -114,7 +139,40 @@ def compile_kernels(nvcc: Path) -> tuple[Path, str]:
         if done.returncode != 0:
             raise build.BuildError(done.stderr)
         report.write_text(done.stderr)  # last: with it, the folder is complete
-    return binary, report.read_text()
+    return kept
+
+
+def check_default(nvcc: Path, write: bool) -> list[str]:
+    """Compiles the kernels of the library; returns where they differ from the tables, or writes these."""
+    default = build.variants()[0]
+    folder = compile_kernels(nvcc, default)
+    found = read_kernels((folder / "report.txt").read_text(), launch_sizes(default, folder))
+    costs = costs_of(nvcc, folder / "device.cubin")
+    if write:
+        TABLE.write_text(json.dumps(found, indent=2) + "\n")
+        COSTS.write_text(json.dumps(costs, indent=2) + "\n")
+    clocks = sum(cost["clocks"] for cost in costs.values())
+    size = (folder / "device.cubin").stat().st_size / 1e6
+    print(f"cuda: {len(found)} kernels for sm_90, {size:.1f} MB; {clocks:,.0f} clocks for 64 samples of an update")
+    return problems(found, json.loads(TABLE.read_text())) + dearer(costs, json.loads(COSTS.read_text()))
+
+
+def check_variants(nvcc: Path, write: bool) -> list[str]:
+    """The same for every variant of the kernels."""
+    found = {}
+    for variant in build.variants():
+        folder = compile_kernels(nvcc, variant)
+        kernels = read_kernels((folder / "report.txt").read_text(), launch_sizes(variant, folder))
+        found[variant] = {name: kernels[name] for name in ("StepWorlds", "LearnWorlds", "CloseWindows")}
+        for name, kernel in found[variant].items():
+            print(f"cuda: {variant}, {name}: " + ", ".join(f"{number} {what}" for what, number in kernel.items()))
+    if write:
+        VARIANTS.write_text(json.dumps(found, indent=2) + "\n")
+    kept = json.loads(VARIANTS.read_text())
+    wrong = [f"{name}: it is in one of source and table alone" for name in sorted(found.keys() ^ kept.keys())]
+    for variant in sorted(found.keys() & kept.keys()):
+        wrong += [f"{variant}: {line}" for line in problems(found[variant], kept[variant])]
+    return wrong
 
 
 def main() -> int:
@@ -122,21 +180,14 @@ def main() -> int:
     if nvcc is None:
         print("cuda: no nvcc in this environment, nothing compiled: uv sync --group cuda")
         return 0
+    check = check_variants if "--variants" in sys.argv else check_default
     try:
-        binary, report = compile_kernels(nvcc)
+        wrong = check(nvcc, "--write" in sys.argv)
     except build.BuildError as error:
         print(error, file=sys.stderr)
         return 1
-    found, costs = read_kernels(report), costs_of(nvcc, binary)
-    if "--write" in sys.argv:
-        TABLE.write_text(json.dumps(found, indent=2) + "\n")
-        COSTS.write_text(json.dumps(costs, indent=2) + "\n")
-    wrong = problems(found, json.loads(TABLE.read_text())) + dearer(costs, json.loads(COSTS.read_text()))
     for line in wrong:
         print(f"cuda: {line}", file=sys.stderr)
-    clocks = sum(cost["clocks"] for cost in costs.values())
-    size = binary.stat().st_size / 1e6
-    print(f"cuda: {len(found)} kernels for sm_90, {size:.1f} MB; {clocks:,.0f} clocks for 64 samples of an update")
     return 1 if wrong else 0
 
 

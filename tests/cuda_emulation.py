@@ -5,10 +5,15 @@ import hashlib
 import os
 import platform
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from project_files import ROOT
+
+sys.path.insert(0, str(ROOT / "engine" / "cuda"))
+
+import build as library_build
 
 from hedon.experiment.device import EMULATED, EMULATION_VARIABLE
 
@@ -31,14 +36,19 @@ THREADS = 64
 """Threads of an emulated block: few, since each barrier goes through all of them. A device has 512."""
 
 
-def build(threads: int = THREADS, *, system_threads: bool = False) -> Path:
+VARIANTS = library_build.variants()
+"""Names of the variants of the kernels; the default first."""
+
+
+def build(threads: int = THREADS, *, system_threads: bool = False, variant: str = VARIANTS[0]) -> Path:
     """The library; built again only if a source has changed.
 
     Args:
         threads: Of a block.
         system_threads: They are threads of the system, which run at the same time, and not fibers in turn.
+        variant: Of the kernels.
     """
-    options = [*OPTIONS, f"-DHEDON_BLOCK_THREADS={threads}"]
+    options = [*OPTIONS, f"-DHEDON_BLOCK_THREADS={threads}", library_build.variant_option(variant)]
     if system_threads:
         options += ["-DHEDON_SYSTEM_THREADS", "-pthread"]
     content = hashlib.sha256(" ".join(options).encode())

@@ -3,16 +3,15 @@
 It needs a device with its driver, nvcc (of CUDA, or of the package `nvidia-cuda-nvcc`) and a C++ compiler, and of
 Python the standard library alone. It builds a native program (`native/device_trial.cpp`), compares bits with the
 processor's, looks for wrong addresses and races with compute-sanitizer if that is there, and takes times. Where this
-Python has hedon, it also builds its library, interrupts a run and resumes it on the processor. `--emulate` does the
-same on the emulated device, to try this script. Exit status: 0 all is well, 1 something is not, 2 there is no device.
+Python has hedon, it also builds its library, interrupts a run and resumes it on the processor. `--variants` instead
+compares the bits and times of all variants of the kernels. `--emulate` does the same on the emulated device, to try
+this script. Exit status: 0 all is well, 1 something is not, 2 there is no device.
 """
 
 import argparse
 import ctypes
 import json
 import os
-import platform
-import re
 import shutil
 import signal
 import subprocess
@@ -20,86 +19,24 @@ import sys
 import sysconfig
 import tempfile
 import time
-from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(ROOT / "engine" / "cuda"))
+from device_build import PLACE, ROOT, build, build_programs
+from device_trial import FEW, FULL, SMALL, WINDOW, Trial, presets, world
+from device_variants import compare_variants
 
-import build  # noqa: E402
-
-TEXTS = ROOT / "tests" / "data" / "device"
-PLACE = ROOT / "build" / "device"
-CPU_OPTIONS = ("-std=c++20", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden", "-pthread")
-FOR_FILE = {
-    "avx2.cpp": ("-mavx2", "-mfma"),
-    "avx512.cpp": ("-mavx512f", "-mavx512dq", "-mavx512bw", "-mavx512vl", "-mfma", "-mprefer-vector-width=512"),
-    "emulation.cpp": ("-mavx2", "-mfma", "-DHEDON_BLOCK_THREADS=64"),
-}
-WINDOW = 1024
-SMALL = {"world.rollout_steps": 16, "learning.minibatch_size": 8, "learning.update_epochs": 2}
-FEW = {**SMALL, "population.capacity": 16, "population.initial_count": 10}
-FULL = {"population.initial_count": 150}
-"""As many agents as a world of the baseline has in the long run."""
 SANITIZERS = ("memcheck", "racecheck", "synccheck", "initcheck")
-RESERVE_SECONDS = 15
 
 
-class Trial:
-    """The run of this script: its clock, and what it has found, which is on disk after each part."""
+def build_default(emulated: bool) -> Path:
+    """The native program with the kernels that the library has.
 
-    def __init__(self, out: Path, seconds: float, emulated: bool) -> None:
-        self.out, self.emulated = out, emulated
-        self.begun, self.end = time.monotonic(), time.monotonic() + seconds
-        self.found: dict[str, Any] = {"emulated": emulated, "machine": platform.platform(), "failures": []}
-
-    def left(self, most: float = 1e9) -> float:
-        """Seconds that a part may take."""
-        return min(most, self.end - time.monotonic() - RESERVE_SECONDS)
-
-    def call(self, *command: str, most: float = 120.0, environment: dict[str, str] | None = None) -> dict[str, Any]:
-        """What a command prints as JSON in its last line, or what went wrong."""
-        seconds = self.left(most)  # as long as it may take, unless the trial ends before
-        if seconds < 1:
-            return {"skipped": "no time was left"}
-        try:
-            done = subprocess.run(
-                command,
-                capture_output=True,
-                text=True,
-                timeout=seconds,
-                check=False,
-                env=os.environ | (environment or {}),
-            )
-        except subprocess.TimeoutExpired:
-            word = "failed" if seconds == most else "skipped"
-            return {word: f"it took more than {seconds:.0f} s"}
-        lines = done.stdout.strip().splitlines()
-        parsed = json.loads(lines[-1]) if lines and lines[-1].startswith("{") else {}
-        if done.returncode == 0:
-            return parsed
-        return {**parsed, "failed": f"status {done.returncode}", "said": (done.stdout + done.stderr)[-2000:]}
-
-    def part(self, name: str, make: Callable[[], Any]) -> Any:
-        """Does a part, keeps what it found, and says so."""
-        begun = time.monotonic()
-        found = make()
-        self.found[name] = found
-        self.found["failures"] += failures(name, found)
-        self.found["seconds"] = round(time.monotonic() - self.begun, 1)
-        self.out.parent.mkdir(parents=True, exist_ok=True)
-        self.out.write_text(json.dumps(self.found, indent=2) + "\n")
-        print(f"device: {name}, {time.monotonic() - begun:.1f} s: {json.dumps(found)[:300]}", flush=True)
-        return found
-
-
-def failures(name: str, found: Any) -> list[str]:
-    """The places in what was found that say "failed"."""
-    if not isinstance(found, dict):
-        return []
-    here = [f"{name}: {found['failed']}"] if "failed" in found else []
-    return here + [line for key, inner in found.items() for line in failures(f"{name}.{key}", inner)]
+    Raises:
+        BuildError: A compiler is missing, or fails.
+    """
+    default = build.variants()[0]
+    return build_programs(emulated, [default])[default]
 
 
 def has_device() -> bool:
@@ -110,73 +47,6 @@ def has_device() -> bool:
         return False
     count = ctypes.c_int(0)
     return driver.cuInit(0) == 0 and driver.cuDeviceGetCount(ctypes.byref(count)) == 0 and count.value > 0
-
-
-def build_program(emulated: bool) -> Path:
-    """The native program, by as many compilers at a time as there are processors.
-
-    Raises:
-        BuildError: A compiler is missing, or fails.
-    """
-    engine, place = ROOT / "engine", PLACE / ("emulated" if emulated else "cuda")
-    place.mkdir(parents=True, exist_ok=True)
-    sources = [path for part in ("base", "kernel", "simulation") for path in sorted((engine / part).glob("*.cpp"))]
-    sources += [engine / "web" / "input.cpp", ROOT / "tests" / "native" / "device_trial.cpp"]
-    compiler = os.environ.get("CXX") or next(filter(None, map(shutil.which, ("c++", "g++", "clang++"))), "c++")
-    commands, libraries = [], []
-    if emulated:
-        sources += [engine / "cuda" / "emulation.cpp", engine / "cuda" / "emulator.cpp"]
-    else:
-        nvcc = build.find_nvcc()
-        if nvcc is None:
-            raise build.BuildError("no nvcc in CUDA_HOME, PATH or this environment")
-        kernels = str(place / "kernels.o")
-        commands += [build.command(nvcc, "-c", build.HOST, "-o", kernels, str(engine / "cuda" / "device.cu"))]
-        libraries = [kernels, *build.runtime_options(nvcc), "-lcudart_static", "-ldl", "-lrt"]
-    objects = [str(place / f"{source.parent.name}-{source.stem}.o") for source in sources]
-    for source, made in zip(sources, objects, strict=True):
-        options = [*CPU_OPTIONS, *FOR_FILE.get(source.name, ()), f"-I{engine}"]
-        commands.append([compiler, *options, "-c", str(source), "-o", made])
-    compile_all(commands)
-    compile_all([[compiler, "-pthread", *objects, *libraries, "-o", str(place / "device_trial")]])
-    return place / "device_trial"
-
-
-def compile_all(commands: list[list[str]]) -> None:
-    """Calls compilers, as many at a time as there are processors.
-
-    Raises:
-        BuildError: One of them fails.
-    """
-    running: list[subprocess.Popen[str]] = []
-    for command in commands:
-        while sum(process.poll() is None for process in running) >= (os.cpu_count() or 1):
-            time.sleep(0.05)
-        running.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
-    for process in running:
-        said = process.communicate()[1]
-        if process.returncode != 0:
-            raise build.BuildError(f"a compiler fails:\n{said[-2000:]}")
-
-
-def world(name: str, folder: Path, changes: Mapping[str, object]) -> str:
-    """The file of a world: a text of `data/device` with some settings changed, in all species."""
-    lines = (TEXTS / f"{name}.txt").read_text().splitlines()
-    for path, value in changes.items():
-        place = re.compile(rf"(species\[\d\]\.)?{re.escape(path)}=")
-        at = [i for i, line in enumerate(lines) if place.match(line)]
-        if not at:
-            raise KeyError(path)
-        for i in at:
-            lines[i] = f"{lines[i].split('=')[0]}={value}"
-    file = folder / f"{name}-{abs(hash(tuple(changes.items())))}.txt"
-    file.write_text("\n".join(lines) + "\n")
-    return str(file)
-
-
-def presets() -> list[str]:
-    """Names of the worlds that are kept as texts."""
-    return sorted(path.stem for path in TEXTS.glob("*.txt"))
 
 
 def compute_sanitizer() -> str | None:
@@ -274,7 +144,7 @@ def commands(trial: Trial, folder: Path) -> dict[str, Any]:
 
 def all_parts(trial: Trial, folder: Path, built: Path | None) -> None:
     """Everything, the most important first."""
-    program = str(trial.part("program", lambda: str(built or build_program(trial.emulated))))
+    program = str(trial.part("program", lambda: str(built or build_default(trial.emulated))))
     trial.part("device", lambda: trial.call(program, "describe"))
     steps = (
         {"one_window": SMALL["world.rollout_steps"] + 2}
@@ -306,8 +176,9 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=570.0, help="after which nothing new begins")
     parser.add_argument("--emulate", action="store_true", help="the emulated device, to try this script")
     parser.add_argument(
-        "--build", action="store_true", help="build the native program and nothing else: no device is needed"
+        "--build", action="store_true", help="build the native programs and nothing else: no device is needed"
     )
+    parser.add_argument("--variants", action="store_true", help="compare all variants of the kernels, and nothing else")
     parser.add_argument("--program", type=Path, help="the native program that --build has made, on another machine too")
     given = parser.parse_args()
     if given.program is not None and not given.program.is_file():
@@ -316,14 +187,19 @@ def main() -> int:
     if not given.build and not given.emulate and not has_device():
         print("device: this machine has no CUDA device, or its driver is missing: nothing was tried", file=sys.stderr)
         return 2
-    trial = Trial(given.out, given.seconds, given.emulate)
     program = given.program.resolve() if given.program else None
     with tempfile.TemporaryDirectory() as folder:
         try:
+            names = build.variants() if given.variants else build.variants()[:1]
+            programs = build_programs(given.emulate, names) if given.build or given.variants else {}
             if given.build:
-                print(f"device: {build_program(given.emulate)}")
+                print("\n".join(f"device: {path}" for path in programs.values()))
                 return 0
-            all_parts(trial, Path(folder), program)
+            trial = Trial(given.out, given.seconds, given.emulate)  # its clock begins after the build
+            if given.variants:
+                compare_variants(trial, Path(folder), programs)
+            else:
+                all_parts(trial, Path(folder), program)
         except build.BuildError as error:
             print(f"device: {error}", file=sys.stderr)
             return 2

@@ -5,6 +5,7 @@ It takes nvcc and a C++ compiler, no device and no other part of CUDA: nvcc from
 """
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -43,6 +44,19 @@ def runtime_options(nvcc: Path) -> list[str]:
     """Options with the location of CUDA's runtime, which the packages keep in another folder than nvcc expects."""
     folders = [nvcc.resolve().parents[1] / name for name in ("lib", "lib64")]
     return [f"-L{folder}" for folder in folders if folder.is_dir()]
+
+
+def variants() -> list[str]:
+    """Names of the variants of the kernels (`variant.h`); the default is the first."""
+    text = (ENGINE / "cuda" / "variant.h").read_text()
+    default = re.findall(r"^#define HEDON_VARIANT (\w+)$", text, re.MULTILINE)
+    names = re.findall(r"^inline constexpr Variant (\w+)\{", text, re.MULTILINE)
+    return [*default, *(name for name in names if name not in default)]
+
+
+def variant_option(variant: str) -> str:
+    """The compiler's option that chooses a variant."""
+    return f"-DHEDON_VARIANT={variant}"
 
 
 def command(nvcc: Path, *arguments: str) -> list[str]:

@@ -124,10 +124,11 @@ const char* describe() {
   static_cast<void>(cudaMemGetInfo(&available, &all));
   char line[400];
   snprintf(line, sizeof line,
-           "{\"name\": \"%s\", \"devices\": %d, \"capability\": \"%d.%d\", \"multiprocessors\": %d, \"clock_khz\": %d, "
+           "{\"name\": \"%s\", \"variant\": \"%s\", \"devices\": %d, \"capability\": \"%d.%d\", \"multiprocessors\": "
+           "%d, \"clock_khz\": %d, "
            "\"memory_bytes\": %zu, \"free_bytes\": %zu, \"driver\": %d, \"runtime\": %d, \"kernels\": {",
-           is.name, count_devices(), is.major, is.minor, is.multiProcessorCount, clock, all, available, driver,
-           runtime);
+           is.name, VARIANT.name, count_devices(), is.major, is.minor, is.multiProcessorCount, clock, all, available,
+           driver, runtime);
   text = line + describe_kernel<StepWorlds>("StepWorlds", StepWorlds::FLOATS) + ", " +
          describe_kernel<LearnWorlds>("LearnWorlds", learning_layout(params_of(95)).total) + ", " +
          describe_kernel<CloseWindows>("CloseWindows", CloseWindows::FLOATS) + "}}";

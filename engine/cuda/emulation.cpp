@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <string>
 #include <type_traits>
 
 namespace hedon {
@@ -65,6 +66,12 @@ const char* fill_kernel(Kernel* kernel) {
   return "";
 }
 
+const char* describe() {
+  static const std::string text =
+      std::string("{\"name\": \"emulation on the processor\", \"variant\": \"") + VARIANT.name + "\"}";
+  return text.c_str();
+}
+
 const DeviceProgram PROGRAM = {
     "cuda-emulated",
     device_layout(),
@@ -72,7 +79,7 @@ const DeviceProgram PROGRAM = {
     [] { return ""; },
     [] { return DEVICES; },
     [](int32_t device) { used = device; },
-    [] { return "{\"name\": \"emulation on the processor\"}"; },
+    describe,
     [] { return LEARNERS_AT_ONCE; },
     reserve,
     free,

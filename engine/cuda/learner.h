@@ -37,8 +37,8 @@ struct BlockUpdate {
 
 static_assert(sizeof(BlockSamples) == SAMPLE_ARRAYS * BLOCK * sizeof(float));
 
-/// Samples or rows of a tile, few enough that each thread of a block has a tile.
-inline constexpr int TILE_ROWS = 2;
+/// Samples or rows of a tile: so few that each thread of a block has one.
+inline constexpr int TILE_ROWS = VARIANT.tile_rows;
 
 /// As many adjacent floats as a tile has rows.
 struct __attribute__((may_alias, aligned(TILE_ROWS * 4))) Column {

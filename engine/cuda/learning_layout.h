@@ -1,6 +1,7 @@
 /// The layout of an update in the shared memory of its block.
 #pragma once
 
+#include "cuda/variant.h"
 #include "kernel/ppo_scratch.h"
 #include "learning/network.h"
 
@@ -13,6 +14,9 @@ inline constexpr int32_t SHARED_FLOATS = 227 * 1024 / 4;
 /// From one row of a hidden layer to the next [floats]. Four more than a row, so that neighboring rows begin in
 /// different banks.
 inline constexpr int32_t HIDDEN_STRIDE = HIDDEN + 4;
+
+/// Moments of Adam that an update keeps there at most.
+inline constexpr int32_t SHARED_MOMENTS = VARIANT.moments;
 
 /// Sums of the loss over a minibatch: the bias of each output, and the log-sd of each action.
 inline constexpr int32_t LOSS_SUMS = OUTPUTS + ACTIONS;
@@ -30,7 +34,7 @@ struct LearningLayout {
   int32_t index;             ///< (64) the steps of the samples
   int32_t total;
 
-  HEDON_FN bool fits() const { return total <= SHARED_FLOATS; }
+  HEDON_FN constexpr bool fits() const { return total <= SHARED_FLOATS; }
 };
 
 /// The layout for a network of `size` parameters with `moments` (0, 1 or 2) of them in shared memory.
@@ -58,9 +62,9 @@ HEDON_FN constexpr LearningLayout learning_layout(int32_t size, int32_t moments)
   return at;
 }
 
-/// The same with as many moments as fit; `fits` is false if not even a network without them does.
+/// The same with as many moments as fit and the variant wants; `fits` is false if not even a network without them does.
 HEDON_FN constexpr LearningLayout learning_layout(int32_t size) {
-  for (int32_t moments = 2; moments > 0; --moments) {
+  for (int32_t moments = SHARED_MOMENTS; moments > 0; --moments) {
     const LearningLayout at = learning_layout(size, moments);
     if (at.total <= SHARED_FLOATS) return at;
   }
@@ -77,9 +81,8 @@ constexpr int32_t first_too_wide() {
 inline constexpr int32_t WIDEST_NETWORK = first_too_wide() - 1;  ///< inputs
 
 // The widths of the presets: one species; poison; predators.
-static_assert(learning_layout(params_of(95)).second_moment >= 0, "an update of 95 inputs fits with both moments");
-static_assert(learning_layout(params_of(95)).total * 4 == 223'808, "tests/cuda.py computes with this size");
-static_assert(learning_layout(params_of(125)).first_moment >= 0, "an update of 125 inputs fits with one moment");
+static_assert(learning_layout(params_of(95), 2).fits(), "an update of 95 inputs fits with both moments");
+static_assert(learning_layout(params_of(125), 1).fits(), "an update of 125 inputs fits with one moment");
 static_assert(WIDEST_NETWORK >= 205, "an update of 205 inputs fits without moments");
 
 }  // namespace hedon

@@ -11,11 +11,6 @@
 
 namespace hedon {
 
-/// Threads of a block, including emulated ones unless a test requests fewer.
-#if !defined(HEDON_BLOCK_THREADS)
-#define HEDON_BLOCK_THREADS 512
-#endif
-inline constexpr int32_t BLOCK_THREADS = HEDON_BLOCK_THREADS;
 static_assert(BLOCK_THREADS % 32 == 0 && BLOCK_THREADS / TILE <= DEVICE_MEMBERS);
 
 /// The value of the next observation of each learner, to which its last reward leads.

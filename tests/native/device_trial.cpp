@@ -5,7 +5,7 @@
 ///     device_trial repeat STEPS WORLDS FILE        bits of the first world again, and among WORLDS of them
 ///     device_trial resume STEPS FILE               from the device to the processor and back, by checkpoints
 ///     device_trial first STEPS FILE                the first step after which bits differ, and which arrays do
-///     device_trial time SECONDS WORLDS FILE        whole windows, for about so long
+///     device_trial time SECONDS WORLDS FILE [N]    whole windows, N of them in a call, for about so long
 ///
 /// Each prints one object of JSON. Exit status 1 where bits differ or a world has a fault, 2 for what cannot be tried.
 #include <chrono>
@@ -167,7 +167,7 @@ int report_resume(int64_t steps, const WorldInput& input) {
   return equal ? 0 : 1;
 }
 
-int report_time(double seconds, int64_t worlds, const WorldInput& input) {
+int report_time(double seconds, int64_t worlds, const WorldInput& input, int windows_per_call) {
   Clock::time_point begun = Clock::now();
   const auto simulation = on_device(input, worlds);
   const double made = since(begun);
@@ -178,9 +178,9 @@ int report_time(double seconds, int64_t worlds, const WorldInput& input) {
   int windows = 0;
   int64_t alive = 0;
   while (windows < MAX_WINDOWS && (windows == 0 || since(begun) < seconds)) {
-    advance(*simulation, window);
-    ++windows;
-    for (int i = 0; i < worlds; ++i) alive += simulation->numbers(i).head().living_count;
+    advance(*simulation, window * windows_per_call);
+    windows += windows_per_call;
+    for (int i = 0; i < worlds; ++i) alive += int64_t{simulation->numbers(i).head().living_count} * windows_per_call;
   }
   const double taken = since(begun);
   const DeviceSeconds after = simulation->device_seconds();
@@ -215,20 +215,22 @@ int report(const std::string& what, const std::vector<std::string>& given) {
     printf("%s\n", program.describe());
     return 0;
   }
-  const bool three = given.size() == 3;
+  const bool windows_given = what == "time" && given.size() == 4;
+  const bool three = given.size() == 3 || windows_given;
   if (!three && !((what == "resume" || what == "first") && given.size() == 2)) {
-    fprintf(
-        stderr,
-        "device_trial describe | same|repeat STEPS WORLDS FILE | resume|first STEPS FILE | time SECONDS WORLDS FILE\n");
+    fprintf(stderr,
+            "device_trial describe | same|repeat STEPS WORLDS FILE | resume|first STEPS FILE | "
+            "time SECONDS WORLDS FILE [WINDOWS PER CALL]\n");
     return 2;
   }
   const int64_t worlds = three ? atoll(given[1].c_str()) : 1;
-  const WorldInput input = read_world(given.back(), worlds);
+  const WorldInput input = read_world(given[three ? 2 : 1], worlds);
   if (what == "same") return report_same(atoll(given[0].c_str()), worlds, input);
   if (what == "repeat") return report_repeat(atoll(given[0].c_str()), worlds, input);
   if (what == "first") return report_first(atoll(given[0].c_str()), input);
   if (what == "resume") return report_resume(atoll(given[0].c_str()), input);
-  return report_time(atof(given[0].c_str()), worlds, input);
+  const int windows_per_call = windows_given ? std::max(1, atoi(given[3].c_str())) : 1;
+  return report_time(atof(given[0].c_str()), worlds, input, windows_per_call);
 }
 
 }  // namespace

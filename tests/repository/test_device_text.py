@@ -43,7 +43,7 @@ def test_its_program_is_built_for_a_device():
     """By nvcc; on a machine without a device the program says so."""
     if device.build.find_nvcc() is None:
         pytest.skip("needs nvcc: uv sync --group cuda")
-    program = device.build_program(emulated=False)
+    program = device.build_default(emulated=False)
     hidden = os.environ | {"CUDA_VISIBLE_DEVICES": ""}
     answer = subprocess.run([str(program), "describe"], capture_output=True, text=True, check=False, env=hidden)
     assert (answer.returncode, "no CUDA device" in answer.stderr) == (2, True)

@@ -1,0 +1,37 @@
+/// The variants of the kernels: the same arithmetic in the same order, divided differently over threads and memory.
+///
+/// A library has one of them, `VARIANT`; what the others need is not compiled. `tests/device.py --variants` builds,
+/// checks and times each.
+#pragma once
+
+#include <cstdint>
+
+namespace hedon {
+
+struct Variant {
+  const char* name;
+  int32_t threads;    ///< of a block
+  int32_t tile_rows;  ///< samples or rows of the tiles that a thread computes in an update
+  int32_t moments;    ///< most moments of Adam that an update keeps in shared memory; the others stay in global memory
+};
+
+/// The list that `--variants` reads: each name is a value of HEDON_VARIANT.
+namespace variant {
+inline constexpr Variant shared_moments{"shared_moments", 512, 2, 2};
+inline constexpr Variant global_moments{"global_moments", 512, 2, 0};
+}  // namespace variant
+
+/// The variant of a build that names none: the fastest of those measured on a device.
+#if !defined(HEDON_VARIANT)
+#define HEDON_VARIANT shared_moments
+#endif
+inline constexpr Variant VARIANT = variant::HEDON_VARIANT;
+
+/// Threads of a block, also of the emulated ones unless a test asks for fewer.
+#if defined(HEDON_BLOCK_THREADS)
+inline constexpr int32_t BLOCK_THREADS = HEDON_BLOCK_THREADS;
+#else
+inline constexpr int32_t BLOCK_THREADS = VARIANT.threads;
+#endif
+
+}  // namespace hedon

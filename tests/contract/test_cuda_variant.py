@@ -1,0 +1,35 @@
+"""Every variant of the kernels of CUDA has the bits of AVX2 on the emulated device."""
+
+import platform
+
+import pytest
+from cuda_emulation import VARIANTS, build
+from worlds import make_simulation
+
+from hedon.experiment.device import EMULATED, EMULATION_VARIABLE
+
+SHORT = ("world.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
+SIZES = {"capacity": 12, "initial_count": 6}
+SETTINGS = {
+    "baseline": ("birth.kappa=0.3", "hazard.kappa=0.01", *(f"population.{size}={n}" for size, n in SIZES.items())),
+    "predator": tuple(
+        f"species.{name}.population.{size}={n}" for name in ("prey", "predator") for size, n in SIZES.items()
+    ),
+}
+SEEDS = {"baseline": range(1, 10), "predator": range(1, 3)}
+"""More worlds than the emulated devices have learners at once, so that variants with groups of worlds have several."""
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="the emulation is compiled for AVX2")
+@pytest.mark.parametrize("preset", SETTINGS)
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_a_variant_has_the_same_bits(variant: str, preset: str, monkeypatch: pytest.MonkeyPatch):
+    """Two windows, and the beginning of the third."""
+    monkeypatch.setenv(EMULATION_VARIABLE, str(build(variant=variant)))
+    one, other = (
+        make_simulation(*SHORT, *SETTINGS[preset], preset=preset, seeds=tuple(SEEDS[preset]), backend=backend)
+        for backend in ("avx2", EMULATED)
+    )
+    for simulation in (one, other):
+        simulation.run(37)
+    assert [world.digest() for world in one.worlds] == [world.digest() for world in other.worlds]
