@@ -64,6 +64,7 @@ test-long: sync
 	$(RUN) --group viewer python tests/matrix.py
 	$(RUN) python tests/soak.py
 	$(RUN) python tests/cuda_step.py
+	$(RUN) --group cuda python tests/cuda.py --variants
 	$(RUN) python tests/sanitize.py asan --cuda
 	$(RUN) python tests/sanitize.py tsan --cuda
 	$(RUN) python tests/sanitize.py tsan

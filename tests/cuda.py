@@ -161,7 +161,7 @@ def check_variants(nvcc: Path, write: bool) -> list[str]:
     """The same for every variant of the kernels."""
     found = {}
     for variant in build.variants():
-        folder = compile_kernels(nvcc, variant)
+        folder = compile_kernels(nvcc, build.same_kernels(variant))
         kernels = read_kernels((folder / "report.txt").read_text(), launch_sizes(variant, folder))
         found[variant] = {name: kernels[name] for name in ("StepWorlds", "LearnWorlds", "CloseWindows")}
         for name, kernel in found[variant].items():

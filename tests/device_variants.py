@@ -29,7 +29,7 @@ class Timing:
         return f"{self.worlds} worlds, {self.windows} per call"
 
 
-TIMINGS = (Timing(256, 1), Timing(256, 4), Timing(64, 1), Timing(512, 1))
+TIMINGS = (Timing(256, 1), Timing(256, 3), Timing(64, 1))
 EMULATED_TIMINGS = (Timing(1, 1), Timing(5, 2))
 MANY = 150
 """More worlds than a device has multiprocessors, so that variants that divide worlds into groups have several."""

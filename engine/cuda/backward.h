@@ -27,7 +27,7 @@ HEDON_FN void heads_backward_by_block(const Block& block, const BlockUpdate& on,
   });
   block.each(OUTPUTS * HIDDEN, [&](int task) {
     const int output = task / HIDDEN, unit = task % HIDDEN;
-    float* const to = on.gradient + on.shape.w3() + task;
+    float* const to = on.gradient_after(on.shape.w3() + task);
     float total = *to;
     for (int s = 0; s < count; ++s)
       total = __builtin_fmaf(on.samples->output[output][s], on.hidden2[s * HIDDEN_STRIDE + unit], total);
@@ -40,7 +40,7 @@ HEDON_FN void second_layer_backward_by_block(const Block& block, const BlockUpda
   block.each(BLOCK * HIDDEN / 4, [&](int task) {
     const int sample = task / 16, unit = task % 16 * 4;
     Four h = read_four(on.hidden2 + sample * HIDDEN_STRIDE + unit);
-    const float* const weight = on.params() + on.shape.w3() + unit;
+    const float* const weight = on.param_after(on.shape.w3() + unit);
     for (int j = 0; j < 4; ++j) {
       float slope = on.samples->output[0][sample] * weight[j];
       for (int o = 1; o < OUTPUTS; ++o)
@@ -52,20 +52,28 @@ HEDON_FN void second_layer_backward_by_block(const Block& block, const BlockUpda
 }
 
 /// Adds to the gradients of the square layer and of its bias.
-HEDON_FN void square_gradient_by_block(const Block& block, const BlockUpdate& on, int count) {
-  each_tile(block, [&](int from, int unit) {
-    float* const to = on.gradient + on.shape.w2() + from * HIDDEN + unit;
-    Totals total;
-    for (int i = 0; i < TILE_ROWS; ++i) total.set_row(i, read_four(to + i * HIDDEN));
+/// own   the thread's part of the first, if the layout is compact
+HEDON_INLINE void square_gradient_by_block(const Block& block, const BlockUpdate& on, int count, OwnTiles& own) {
+  const auto add_samples = [&](Totals& total, int from, int unit) {
     for (int s = 0; s < count; ++s) {
       const Column left = read_column(on.hidden1 + s * HIDDEN_STRIDE + from);
       const Four right = read_four(on.hidden2 + s * HIDDEN_STRIDE + unit);
       for (int i = 0; i < TILE_ROWS; ++i) total.add(i, left.v[i], right);
     }
-    for (int i = 0; i < TILE_ROWS; ++i) write_four(to + i * HIDDEN, total.row(i));
-  });
+  };
+  if constexpr (COMPACT) {
+    own.each(block, add_samples);
+  } else {
+    each_tile(block, [&](int from, int unit) {
+      float* const to = on.gradient + on.shape.w2() + from * HIDDEN + unit;
+      Totals total;
+      for (int i = 0; i < TILE_ROWS; ++i) total.set_row(i, read_four(to + i * HIDDEN));
+      add_samples(total, from, unit);
+      for (int i = 0; i < TILE_ROWS; ++i) write_four(to + i * HIDDEN, total.row(i));
+    });
+  }
   block.each(HIDDEN, [&](int unit) {
-    float* const to = on.gradient + on.shape.b2() + unit;
+    float* const to = on.gradient_after(on.shape.b2() + unit);
     float total = *to;
     for (int s = 0; s < count; ++s) total = total + on.hidden2[s * HIDDEN_STRIDE + unit];
     *to = total;
@@ -75,13 +83,25 @@ HEDON_FN void square_gradient_by_block(const Block& block, const BlockUpdate& on
 /// Replaces the first hidden layer by the derivatives of its sums.
 HEDON_FN void hidden_backward_by_block(const Block& block, const BlockUpdate& on) {
   each_tile(block, [&](int sample, int unit) {
+    const float* const slopes = on.hidden2 + sample * HIDDEN_STRIDE;
+    float* const to = on.hidden1 + sample * HIDDEN_STRIDE;
     Totals total{};
-    multiply_rows(on.hidden2 + sample * HIDDEN_STRIDE, on.w2_transposed + unit, total);
-    for (int i = 0; i < TILE_ROWS; ++i) {
-      float* const to = on.hidden1 + (sample + i) * HIDDEN_STRIDE + unit;
-      Four h = read_four(to);
-      for (int j = 0; j < 4; ++j) h.v[j] = total.v[i][j] * (1.0f - h.v[j] * h.v[j]);
-      write_four(to, h);
+    if constexpr (COMPACT) {
+      const int first = unit / 4;
+      multiply_columns(slopes, on.params() + on.shape.w2() + first * SQUARE_STRIDE, total);
+      for (int i = 0; i < TILE_ROWS; ++i) {
+        for (int j = 0; j < 4; ++j) {
+          float& h = to[i * HIDDEN_STRIDE + first + j * 16];
+          h = total.v[i][j] * (1.0f - h * h);
+        }
+      }
+    } else {
+      multiply_rows<HIDDEN>(slopes, on.w2_transposed + unit, total);
+      for (int i = 0; i < TILE_ROWS; ++i) {
+        Four h = read_four(to + i * HIDDEN_STRIDE + unit);
+        for (int j = 0; j < 4; ++j) h.v[j] = total.v[i][j] * (1.0f - h.v[j] * h.v[j]);
+        write_four(to + i * HIDDEN_STRIDE + unit, h);
+      }
     }
   });
 }

@@ -54,6 +54,13 @@ def variants() -> list[str]:
     return [*default, *(name for name in names if name not in default)]
 
 
+def same_kernels(variant: str) -> str:
+    """The first variant with the same kernels: variants may differ only in their last field, which the host uses."""
+    text = (ENGINE / "cuda" / "variant.h").read_text()
+    fields = dict(re.findall(r"^inline constexpr Variant (\w+)\{\"\w+\", (.+), \w+\};", text, re.MULTILINE))
+    return next(name for name in variants() if fields[name] == fields[variant])
+
+
 def variant_option(variant: str) -> str:
     """The compiler's option that chooses a variant."""
     return f"-DHEDON_VARIANT={variant}"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "cuda/window.h"
@@ -12,9 +13,12 @@ namespace hedon {
 namespace {
 
 constexpr int32_t MAX_DEVICES = 64;
+// Of compute capability 9.0. Source: CUDA C++ Programming Guide, table of technical specifications.
+constexpr int64_t MULTIPROCESSOR_BYTES = 228 * 1024;  ///< of shared memory
+constexpr int64_t BLOCK_BYTES = 1024;                 ///< of it, that each block takes for itself
 
 template <class Kernel>
-__global__ void __launch_bounds__(BLOCK_THREADS) run_kernel(const Kernel kernel) {
+__global__ void __launch_bounds__(BLOCK_THREADS, VARIANT.together) run_kernel(const Kernel kernel) {
   kernel(static_cast<int32_t>(blockIdx.x));
 }
 
@@ -31,33 +35,75 @@ const char* text_of(cudaError_t error) {
 /// Two events around a kernel.
 struct Lap {
   DevicePart part;
+  int32_t group;
   cudaEvent_t begin = nullptr, end = nullptr;
 };
 
 thread_local int32_t used = 0;
+thread_local int32_t carveout = 100;  ///< percent of a multiprocessor's memory that kernels ask for as shared memory
 std::vector<Lap> laps_of[MAX_DEVICES];
+cudaStream_t streams_of[MAX_DEVICES][DEVICE_PARTS] = {};  ///< null, the stream of copies, until they are needed
 
-/// Starts a kernel after the previous ones. Only the first failure of several launches matters.
+/// The part that the blocks take that run side by side: updates, or one update and one block that steps.
+int32_t carveout_of(int64_t learning_floats) {
+  const auto bytes = [](int64_t floats) { return floats * static_cast<int64_t>(sizeof(float)) + BLOCK_BYTES; };
+  const int64_t learn = bytes(learning_floats);
+  const int64_t most = std::max(VARIANT.learners * learn, learn + bytes(StepWorlds::FLOATS));
+  return static_cast<int32_t>(std::min<int64_t>(100, (most * 100 + MULTIPROCESSOR_BYTES - 1) / MULTIPROCESSOR_BYTES));
+}
+
+/// Lets a kernel have this much shared memory. Blocks share a multiprocessor only if they divide its memory in the same
+/// way into shared memory and cache; so what runs side by side asks for the same.
 template <class Kernel>
-cudaError_t start(const Kernel& kernel, int64_t floats) {
+cudaError_t allow_shared(int bytes) {
+  cudaError_t first = cudaFuncSetAttribute(run_kernel<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes);
+  if constexpr (VARIANT.overlap || (VARIANT.learners > 1 && std::is_same_v<Kernel, LearnWorlds>)) {
+    if (first == cudaSuccess)
+      first = cudaFuncSetAttribute(run_kernel<Kernel>, cudaFuncAttributePreferredSharedMemoryCarveout, carveout);
+  }
+  return first;
+}
+
+/// Starts a kernel after those before it in its stream. Only the first failure of several launches is of interest.
+template <class Kernel>
+cudaError_t start(const Kernel& kernel, int64_t floats, cudaStream_t stream) {
   const int bytes = static_cast<int>(floats * static_cast<int64_t>(sizeof(float)));
-  const cudaError_t allowed =
-      cudaFuncSetAttribute(run_kernel<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes);
+  const cudaError_t allowed = allow_shared<Kernel>(bytes);
   if (allowed != cudaSuccess) return allowed;
-  run_kernel<<<static_cast<unsigned>(kernel.blocks()), BLOCK_THREADS, static_cast<size_t>(bytes)>>>(kernel);
+  run_kernel<<<static_cast<unsigned>(kernel.blocks()), BLOCK_THREADS, static_cast<size_t>(bytes), stream>>>(kernel);
   return cudaGetLastError();
 }
 
-/// The same, with events recorded before and after it.
+/// The stream of a part. All wait for the copies before, and these for them. Steps go first: the blocks of updates
+/// could take all room, and stay until the last learner is done.
+cudaError_t find_stream(DevicePart part, cudaStream_t& stream) {
+  cudaStream_t& kept = streams_of[used][static_cast<int32_t>(part)];
+  cudaError_t first = cudaSuccess;
+  if (VARIANT.overlap && kept == nullptr) {
+    int lowest = 0, highest = 0;
+    first = cudaDeviceGetStreamPriorityRange(&lowest, &highest);
+    if (first == cudaSuccess)
+      first = cudaStreamCreateWithPriority(&kept, cudaStreamDefault, part == DevicePart::step ? highest : lowest);
+  }
+  stream = kept;
+  return first;
+}
+
+/// The same after the last kernel of its group of worlds, with a note of the moments before and after it.
 template <class Kernel>
-cudaError_t start_timed(const Kernel& kernel, int64_t floats) {
-  Lap lap{Kernel::PART};
-  cudaError_t first = cudaEventCreate(&lap.begin);
+cudaError_t start_timed(int32_t group, const Kernel& kernel, int64_t floats) {
+  Lap lap{Kernel::PART, group};
+  cudaStream_t stream = nullptr;
+  cudaError_t first = find_stream(Kernel::PART, stream);
+  std::vector<Lap>& laps = laps_of[used];
+  const auto last = std::find_if(laps.rbegin(), laps.rend(), [&](const Lap& each) { return each.group == group; });
+  if (VARIANT.overlap && first == cudaSuccess && last != laps.rend()) first = cudaStreamWaitEvent(stream, last->end);
+  if (first == cudaSuccess) first = cudaEventCreate(&lap.begin);
   if (first == cudaSuccess) first = cudaEventCreate(&lap.end);
-  if (first == cudaSuccess) first = cudaEventRecord(lap.begin);
-  if (first == cudaSuccess) first = start(kernel, floats);
-  if (first == cudaSuccess) first = cudaEventRecord(lap.end);
-  laps_of[used].push_back(lap);
+  if (first == cudaSuccess) first = cudaEventRecord(lap.begin, stream);
+  if (first == cudaSuccess) first = start(kernel, floats, stream);
+  if (first == cudaSuccess) first = cudaEventRecord(lap.end, stream);
+  laps.push_back(lap);
   return first;
 }
 
@@ -89,11 +135,11 @@ void use_device(int32_t device) {
   static_cast<void>(cudaSetDevice(device));  // a failure shows in the next call
 }
 
-/// An update fills the shared memory of a multiprocessor, so one block runs on each.
+/// As many blocks on each multiprocessor as the variant has room for.
 int32_t learners_at_once() {
   int multiprocessors = 1;
   if (cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, used) != cudaSuccess) return 1;
-  return multiprocessors;
+  return multiprocessors * VARIANT.learners;
 }
 
 /// The resources that a kernel needs, with this much shared memory.
@@ -102,8 +148,7 @@ std::string describe_kernel(const char* name, int64_t floats) {
   const size_t bytes = static_cast<size_t>(floats) * sizeof(float);
   cudaFuncAttributes needs{};
   int blocks = 0;
-  static_cast<void>(
-      cudaFuncSetAttribute(run_kernel<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(bytes)));
+  static_cast<void>(allow_shared<Kernel>(static_cast<int>(bytes)));
   static_cast<void>(cudaFuncGetAttributes(&needs, run_kernel<Kernel>));
   static_cast<void>(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, run_kernel<Kernel>, BLOCK_THREADS, bytes));
   char text[200];
@@ -152,14 +197,15 @@ const char* copy_out(void* to, const void* from, int64_t bytes) {
 }
 
 const char* fill_kernel(Kernel* kernel) {
-  const cudaError_t started = start(FillKernel{kernel}, FillKernel::FLOATS);
+  const cudaError_t started = start(FillKernel{kernel}, FillKernel::FLOATS, nullptr);
   return text_of(started != cudaSuccess ? started : cudaDeviceSynchronize());
 }
 
 const char* advance_all(const DeviceWorlds& worlds, int64_t step, int64_t steps) {
+  carveout = carveout_of(learning_floats(worlds));
   cudaError_t first = cudaSuccess;
-  advance_worlds(worlds, step, steps, [&](const auto& kernel, int64_t floats) {
-    if (first == cudaSuccess) first = start_timed(kernel, floats);
+  advance_worlds(worlds, step, steps, [&](int32_t group, const auto& kernel, int64_t floats) {
+    if (first == cudaSuccess) first = start_timed(group, kernel, floats);
   });
   return text_of(first);
 }

@@ -1,6 +1,7 @@
 /// The device of the tests: the kernels of CUDA, run by the emulator.
 #include "base/float_mode.h"
 #include "cuda/emulator.h"
+#include "cuda/schedule.h"
 #include "cuda/window.h"
 
 #include <chrono>
@@ -34,12 +35,17 @@ const char* advance(const DeviceWorlds& worlds, int64_t step, int64_t steps) {
   if (runs_left > 0) --runs_left;
   if (lost()) return "";        // as on a device, where a failure shows at the next wait
   const FloatMode mode(false);  // a device keeps denormals
-  advance_worlds(worlds, step, steps, [](const auto& kernel, int64_t floats) {
-    const Clock::time_point begun = Clock::now();
-    emulate(kernel, floats);
+  Schedule schedule;
+  advance_worlds(worlds, step, steps, [&](int32_t group, const auto& kernel, int64_t floats) {
     const int32_t part = static_cast<int32_t>(std::remove_cvref_t<decltype(kernel)>::PART);
-    seconds_of[used][part] += std::chrono::duration<double>(Clock::now() - begun).count();
+    double& seconds = seconds_of[used][part];
+    schedule.add(group, part, [=, &seconds] {
+      const Clock::time_point begun = Clock::now();
+      emulate(kernel, floats);
+      seconds += std::chrono::duration<double>(Clock::now() - begun).count();
+    });
   });
+  schedule.run();
   return "";
 }
 

@@ -74,8 +74,8 @@ HEDON_FN void first_layer_by_block(const Block& block, const BlockUpdate& on, co
 HEDON_FN void second_layer_by_block(const Block& block, const BlockUpdate& on) {
   each_tile(block, [&](int sample, int unit) {
     Totals total;
-    for (int i = 0; i < TILE_ROWS; ++i) total.set_row(i, read_four(on.params() + on.shape.b2() + unit));
-    multiply_rows(on.hidden1 + sample * HIDDEN_STRIDE, on.params() + on.shape.w2() + unit, total);
+    for (int i = 0; i < TILE_ROWS; ++i) total.set_row(i, read_four(on.param_after(on.shape.b2()) + unit));
+    multiply_rows<SQUARE_STRIDE>(on.hidden1 + sample * HIDDEN_STRIDE, on.params() + on.shape.w2() + unit, total);
     for (int i = 0; i < TILE_ROWS; ++i) {
       Four out;
       for (int j = 0; j < 4; ++j) out.v[j] = tanh_lanes(Lanes{total.v[i][j]}).v;
@@ -89,14 +89,14 @@ HEDON_FN void heads_by_block(const Block& block, const BlockUpdate& on) {
   block.each(OUTPUTS * BLOCK, [&](int task) {
     const int output = task / BLOCK, sample = task % BLOCK;
     const float* const hidden = on.hidden2 + sample * HIDDEN_STRIDE;
-    const float* const weight = on.params() + on.shape.w3() + output * HIDDEN;
+    const float* const weight = on.param_after(on.shape.w3()) + output * HIDDEN;
     float lane[16];
     for (int i = 0; i < 16; ++i) lane[i] = hidden[i] * weight[i];
     for (int c = 16; c < HIDDEN; ++c) lane[c % 16] = __builtin_fmaf(hidden[c], weight[c], lane[c % 16]);
     for (int half = 8; half > 0; half /= 2) {
       for (int i = 0; i < half; ++i) lane[i] += lane[i + half];
     }
-    on.samples->output[output][sample] = lane[0] + on.params()[on.shape.b3() + output];
+    on.samples->output[output][sample] = lane[0] + *on.param_after(on.shape.b3() + output);
   });
 }
 

@@ -33,6 +33,10 @@ struct BlockUpdate {
   int32_t* index;
 
   HEDON_INLINE const float* params() const { return learner.params; }
+
+  /// The i-th parameter of the network, which must follow the square layer, and its place in the gradient.
+  HEDON_INLINE const float* param_after(int32_t i) const { return learner.params + i + PARAM_SHIFT; }
+  HEDON_INLINE float* gradient_after(int32_t i) const { return gradient + i + GRADIENT_SHIFT; }
 };
 
 static_assert(sizeof(BlockSamples) == SAMPLE_ARRAYS * BLOCK * sizeof(float));
@@ -59,20 +63,53 @@ struct Totals {
   }
 };
 
+inline constexpr int TILES = BLOCK / TILE_ROWS * (HIDDEN / 4);  ///< of a (64, 64) matrix
+
 /// Calls body(row, column) for each tile of a (64, 64) matrix.
 template <class Body>
 HEDON_INLINE void each_tile(const Block& block, Body&& body) {
-  block.each(BLOCK / TILE_ROWS * (HIDDEN / 4), [&](int tile) { body(tile / 16 * TILE_ROWS, tile % 16 * 4); });
+  block.each(TILES, [&](int tile) { body(tile / 16 * TILE_ROWS, tile % 16 * 4); });
 }
 
-/// A tile of A·B: a has its rows HIDDEN_STRIDE apart, b its rows 64; both are 64 wide. Adds to `total`, in order.
+/// The tiles of a matrix that a thread has: as in `each_tile`.
+struct OwnTiles {
+  static constexpr int COUNT = (TILES + BLOCK_THREADS - 1) / BLOCK_THREADS;
+  Totals total[COUNT] = {};
+
+  /// Calls body(total, row, column) for each of them.
+  template <class Body>
+  HEDON_INLINE void each(const Block& block, Body&& body) {
+    for (int n = 0; n < COUNT; ++n) {
+      const int tile = block.rank() + n * BLOCK_THREADS;
+      if (tile < TILES) body(total[n], tile / 16 * TILE_ROWS, tile % 16 * 4);
+    }
+  }
+};
+
+/// A tile of A·B: a has its rows HIDDEN_STRIDE apart, b its rows STRIDE; both are 64 wide. Adds to `total`, in order.
+template <int STRIDE>
 HEDON_INLINE void multiply_rows(const float* a, const float* b, Totals& total) {
   for (int k = 0; k < HIDDEN; k += 4) {
     Four left[TILE_ROWS];
     for (int i = 0; i < TILE_ROWS; ++i) left[i] = read_four(a + i * HIDDEN_STRIDE + k);
     for (int q = 0; q < 4; ++q) {
-      const Four right = read_four(b + (k + q) * HIDDEN);
+      const Four right = read_four(b + (k + q) * STRIDE);
       for (int i = 0; i < TILE_ROWS; ++i) total.add(i, left[i].v[q], right);
+    }
+  }
+}
+
+/// The same of A·Bᵀ, with the columns 0, 16, 32 and 48 after the first row of b: neighboring threads read neighboring
+/// rows, which begin in other banks.
+HEDON_INLINE void multiply_columns(const float* a, const float* b, Totals& total) {
+  for (int k = 0; k < HIDDEN; k += 4) {
+    Four left[TILE_ROWS], right[4];
+    for (int i = 0; i < TILE_ROWS; ++i) left[i] = read_four(a + i * HIDDEN_STRIDE + k);
+    for (int j = 0; j < 4; ++j) right[j] = read_four(b + j * 16 * SQUARE_STRIDE + k);
+    for (int q = 0; q < 4; ++q) {
+      for (int i = 0; i < TILE_ROWS; ++i) {
+        for (int j = 0; j < 4; ++j) total.v[i][j] = __builtin_fmaf(left[i].v[q], right[j].v[q], total.v[i][j]);
+      }
     }
   }
 }

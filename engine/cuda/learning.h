@@ -15,8 +15,9 @@ namespace hedon {
 namespace {
 
 /// Forward, loss and backward of at most 64 samples.
-HEDON_FN void gradient_of_samples(const Block& block, const BlockUpdate& on, const PpoBatch& batch,
-                                  const int32_t* order, int count, const LossConstants& constants) {
+HEDON_INLINE void gradient_of_samples(const Block& block, const BlockUpdate& on, const PpoBatch& batch,
+                                      const int32_t* order, int count, const LossConstants& constants,
+                                      OwnTiles& square) {
   const int padded = (count + TILE - 1) / TILE * TILE;
   gather_by_block(block, on, batch, order, count);
   block.barrier();
@@ -32,7 +33,7 @@ HEDON_FN void gradient_of_samples(const Block& block, const BlockUpdate& on, con
   block.barrier();
   second_layer_backward_by_block(block, on);
   block.barrier();
-  square_gradient_by_block(block, on, count);
+  square_gradient_by_block(block, on, count, square);
   block.barrier();
   hidden_backward_by_block(block, on);
   block.barrier();
@@ -45,15 +46,17 @@ HEDON_FN void begin_minibatch(const Block& block, const BlockUpdate& on) {
   const float* const params = on.params();
   fold_bias_by(block, on.shape, params + on.shape.b1(), on.folded_bias,
                [&](int32_t row, int unit) { return params[row * HIDDEN + unit]; });
-  block.each(HIDDEN * HIDDEN,
-             [&](int i) { on.w2_transposed[i] = params[on.shape.w2() + i % HIDDEN * HIDDEN + i / HIDDEN]; });
-  block.each(on.shape.size(), [&](int i) { on.gradient[i] = 0.0f; });
+  if constexpr (!COMPACT) {
+    block.each(HIDDEN * HIDDEN,
+               [&](int i) { on.w2_transposed[i] = params[on.shape.w2() + i % HIDDEN * HIDDEN + i / HIDDEN]; });
+  }
+  block.each(on.shape.size() + GRADIENT_SHIFT, [&](int i) { on.gradient[i] = 0.0f; });
   block.each(LOSS_SUMS * TILE, [&](int i) { on.sums[i] = 0.0f; });
   block.barrier();
 }
 
 /// The rest of a minibatch's gradient, after all of its samples.
-HEDON_FN void finish_gradient(const Block& block, const BlockUpdate& on) {
+HEDON_INLINE void finish_gradient(const Block& block, const BlockUpdate& on, OwnTiles& square) {
   const NetworkShape& shape = on.shape;
   block.each(shape.observation.ray_entries() * HIDDEN, [&](int i) {
     on.gradient[i] = on.gradient[i] - on.gradient[shape.b1() + i % HIDDEN];  // the -1 of the rays
@@ -64,9 +67,29 @@ HEDON_FN void finish_gradient(const Block& block, const BlockUpdate& on) {
     for (int half = TILE / 2; half > 0; half /= 2) {
       for (int l = 0; l < half; ++l) lane[l] += lane[l + half];
     }
-    on.gradient[shape.b3() + i] = i < OUTPUTS ? lane[0] : lane[0] - on.config.entropy_coef;
+    *on.gradient_after(shape.b3() + i) = i < OUTPUTS ? lane[0] : lane[0] - on.config.entropy_coef;
   });
+  if constexpr (COMPACT) {
+    square.each(block, [&](const Totals& total, int from, int unit) {
+      for (int i = 0; i < TILE_ROWS; ++i) write_four(on.hidden2 + (from + i) * HIDDEN + unit, total.row(i));
+    });
+  }
   block.barrier();
+}
+
+/// One Adam step of 16 parameters from `i` on.
+HEDON_FN void adam_of_block(const BlockUpdate& on, const AdamStep& step, int32_t i) {
+  const NetworkShape& shape = on.shape;
+  Learner learner = on.learner;
+  const float* gradient = on.gradient;
+  if (COMPACT && i >= shape.b2()) {
+    learner.params += PARAM_SHIFT;
+    gradient += GRADIENT_SHIFT;
+  } else if (COMPACT && i >= shape.w2()) {
+    learner.params += (i - shape.w2()) / HIDDEN * (SQUARE_STRIDE - HIDDEN);
+    gradient = on.hidden2 - shape.w2();
+  }
+  adam_lanes(step, i, gradient, learner);
 }
 
 /// The gradient of one minibatch, and one Adam step.
@@ -74,7 +97,7 @@ HEDON_FN void update_minibatch(const Block& block, const BlockUpdate& on, const 
                                int64_t number) {
   begin_minibatch(block, on);
   const int32_t size = on.config.minibatch_size;
-  const float* const log_sd = on.params() + on.shape.log_sd();
+  const float* const log_sd = on.param_after(on.shape.log_sd());
   float sd_inverse[ACTIONS];
   for (int a = 0; a < ACTIONS; ++a) sd_inverse[a] = exp_lanes(Lanes{-log_sd[a]}).v;
   float target_mean = 0.0f;
@@ -83,15 +106,21 @@ HEDON_FN void update_minibatch(const Block& block, const BlockUpdate& on, const 
     target_mean *= 1.0f / static_cast<float>(size);
   }
   const LossConstants constants = make_loss_constants(on.config, log_sd, sd_inverse, target_mean);
+  OwnTiles square;
   for (int32_t first = 0; first < size; first += BLOCK) {
     const int count = size - first < BLOCK ? size - first : BLOCK;
-    gradient_of_samples(block, on, batch, order + first, count, constants);
+    gradient_of_samples(block, on, batch, order + first, count, constants, square);
   }
-  finish_gradient(block, on);
+  finish_gradient(block, on, square);
   const AdamStep step = make_adam_step(on.config, number);
-  for (int32_t i = block.tile() * TILE; i < on.shape.size(); i += block.tiles() * TILE)
-    adam_lanes(step, i, on.gradient, on.learner);
+  for (int32_t i = block.tile() * TILE; i < on.shape.size(); i += block.tiles() * TILE) adam_of_block(on, step, i);
   block.barrier();
+}
+
+/// The place of the i-th parameter of a network in shared memory.
+HEDON_FN int32_t param_place(const NetworkShape& shape, int32_t i) {
+  if (!COMPACT || i < shape.w2()) return i;
+  return i < shape.b2() ? i + (i - shape.w2()) / HIDDEN * (SQUARE_STRIDE - HIDDEN) : i + PARAM_SHIFT;
 }
 
 /// Places an update in shared memory and copies the learner there.
@@ -103,7 +132,7 @@ HEDON_FN BlockUpdate begin_update(const Block& block, const NetworkShape& shape,
   const Learner learner{memory + at.params, place(at.first_moment, home.first_moment),
                         place(at.second_moment, home.second_moment), home.updates};
   block.for_each(shape.size(), [&](int i) {
-    learner.params[i] = home.params[i];
+    learner.params[param_place(shape, i)] = home.params[i];
     if (at.first_moment >= 0) learner.first_moment[i] = home.first_moment[i];
     if (at.second_moment >= 0) learner.second_moment[i] = home.second_moment[i];
   });
@@ -126,12 +155,12 @@ HEDON_FN BlockUpdate begin_update(const Block& block, const NetworkShape& shape,
 HEDON_FN void finish_update(const Block& block, const BlockUpdate& on, const Learner& home, int64_t updates,
                             const ActingNetwork& network) {
   block.for_each(on.shape.size(), [&](int i) {
-    home.params[i] = on.learner.params[i];
+    home.params[i] = on.learner.params[param_place(on.shape, i)];
     if (on.at.first_moment >= 0) home.first_moment[i] = on.learner.first_moment[i];
     if (on.at.second_moment >= 0) home.second_moment[i] = on.learner.second_moment[i];
     if (i == 0) *home.updates = updates;
   });
-  pack_weights_by(block, on.shape, on.params(), network);
+  pack_weights_by(block, on.shape, COMPACT ? home.params : on.params(), network);
   block.barrier();
 }
 

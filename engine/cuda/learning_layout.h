@@ -18,6 +18,15 @@ inline constexpr int32_t HIDDEN_STRIDE = HIDDEN + 4;
 /// Moments of Adam that an update keeps there at most.
 inline constexpr int32_t SHARED_MOMENTS = VARIANT.moments;
 
+/// The places of parameters in shared memory. In a compact layout, rows of the square layer are HIDDEN_STRIDE apart, so
+/// that threads read columns as fast as rows. Its gradient is in registers until the samples are done, then takes the
+/// place of the second hidden layer.
+inline constexpr bool COMPACT = VARIANT.compact;
+inline constexpr int32_t SQUARE_STRIDE = COMPACT ? HIDDEN_STRIDE : HIDDEN;
+inline constexpr int32_t PARAM_SHIFT = (SQUARE_STRIDE - HIDDEN) * HIDDEN;  ///< of parameters after the square layer
+inline constexpr int32_t GRADIENT_SHIFT = COMPACT ? -HIDDEN * HIDDEN : 0;  ///< the same of the gradient
+static_assert(!COMPACT || SHARED_MOMENTS == 0, "moments in shared memory have the places of the network");
+
 /// Sums of the loss over a minibatch: the bias of each output, and the log-sd of each action.
 inline constexpr int32_t LOSS_SUMS = OUTPUTS + ACTIONS;
 inline constexpr int32_t SAMPLE_ARRAYS = OUTPUTS + ACTIONS + 4;  ///< of a `BlockSamples`
@@ -25,7 +34,7 @@ inline constexpr int32_t SAMPLE_ARRAYS = OUTPUTS + ACTIONS + 4;  ///< of a `Bloc
 /// Places in shared memory [floats]; -1 for a moment of Adam that stays in global memory, since it does not fit.
 struct LearningLayout {
   int32_t params, gradient, first_moment, second_moment;
-  int32_t w2_transposed;     ///< (64, 64)
+  int32_t w2_transposed;     ///< (64, 64), unless the layout is compact
   int32_t hidden1, hidden2;  ///< (64 samples, HIDDEN_STRIDE)
   int32_t folded_bias;       ///< (64)
   int32_t samples;           ///< `BlockSamples`
@@ -45,12 +54,12 @@ HEDON_FN constexpr LearningLayout learning_layout(int32_t size, int32_t moments)
     place = next;
     next += floats;
   };
-  take(at.params, size);
-  take(at.gradient, size);
+  take(at.params, size + PARAM_SHIFT);
+  take(at.gradient, size + GRADIENT_SHIFT);
   at.first_moment = at.second_moment = -1;
   if (moments > 0) take(at.first_moment, size);
   if (moments > 1) take(at.second_moment, size);
-  take(at.w2_transposed, HIDDEN * HIDDEN);
+  take(at.w2_transposed, COMPACT ? 0 : HIDDEN * HIDDEN);
   take(at.hidden1, BLOCK * HIDDEN_STRIDE);
   take(at.hidden2, BLOCK * HIDDEN_STRIDE);
   take(at.folded_bias, HIDDEN);
@@ -81,8 +90,11 @@ constexpr int32_t first_too_wide() {
 inline constexpr int32_t WIDEST_NETWORK = first_too_wide() - 1;  ///< inputs
 
 // The widths of the presets: one species; poison; predators.
-static_assert(learning_layout(params_of(95), 2).fits(), "an update of 95 inputs fits with both moments");
-static_assert(learning_layout(params_of(125), 1).fits(), "an update of 125 inputs fits with one moment");
+static_assert(COMPACT || learning_layout(params_of(95), 2).fits(), "an update of 95 inputs fits with both moments");
+static_assert(COMPACT || learning_layout(params_of(125), 1).fits(), "an update of 125 inputs fits with one moment");
+static_assert(
+    VARIANT.learners * (learning_layout(params_of(95)).total + 256) <= SHARED_FLOATS + 256,
+    "as many updates of 95 inputs as the variant says fit a multiprocessor, with 1 KiB that each block takes");
 static_assert(WIDEST_NETWORK >= 205, "an update of 205 inputs fits without moments");
 
 }  // namespace hedon

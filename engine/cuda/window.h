@@ -31,6 +31,7 @@ HEDON_FN void bootstrap_by_block(Block& block, World& world, float* bootstrap) {
 struct StepWorlds {
   static constexpr DevicePart PART = DevicePart::step;
   DeviceWorlds on;
+  int32_t first;  ///< row of the first world in `on.bootstrap`
   int64_t steps;
 
   static constexpr int64_t FLOATS = int64_t{BLOCK_THREADS} / TILE * SENSE_FLOATS;
@@ -44,7 +45,7 @@ struct StepWorlds {
     for (int64_t i = 0; i < steps && !world.over(); ++i)
       step(block, world, world.head().step % world.shape->steps, [](Part) {});
     if (world.over() || world.head().step % world.shape->steps != 0) return;
-    bootstrap_by_block(block, world, on.bootstrap + int64_t{b} * world.shape->capacity);
+    bootstrap_by_block(block, world, on.bootstrap + int64_t{first + b} * world.shape->capacity);
   }
 };
 
@@ -52,6 +53,7 @@ struct StepWorlds {
 struct LearnWorlds {
   static constexpr DevicePart PART = DevicePart::learn;
   DeviceWorlds on;
+  int32_t first;  ///< row of the first world in `on.bootstrap`
 
   HEDON_FN int32_t blocks() const { return on.learners_at_once; }
 
@@ -66,7 +68,7 @@ struct LearnWorlds {
       const int32_t slot = world.state.living[rank];
       const Species& species = world.species(slot);
       if (!species.learns || world.state.life[slot].birth_step > world.head().step - world.shape->steps) continue;
-      const float value = on.bootstrap[int64_t{i % on.count} * capacity + rank];
+      const float value = on.bootstrap[int64_t{first + i % on.count} * capacity + rank];
       learn_by_block(block, species.network, own_learning(world, slot), rollout_of(world, slot, value),
                      minibatch_stream(world, slot), on.scratch + b * on.scratch_stride, learner_of(world, slot),
                      world.network(slot));
@@ -114,18 +116,35 @@ inline int64_t learning_floats(const DeviceWorlds& on) {
   return most;
 }
 
-/// Advances all worlds. `launch(kernel, floats)` runs a kernel after the previous ones.
+/// Groups that worlds are divided into, so that one steps while another one learns: as many as leave no multiprocessor
+/// more than one world of a group. A single one if kernels do not overlap.
+inline int32_t group_count(const DeviceWorlds& on) {
+  if (!VARIANT.overlap) return 1;
+  const int32_t multiprocessors = on.learners_at_once / VARIANT.learners;
+  const int32_t groups = (on.count + multiprocessors - 1) / multiprocessors;
+  return groups < MAX_GROUPS ? groups : MAX_GROUPS;
+}
+
+/// Advances all worlds. `launch(g, kernel, floats)` runs a kernel of group g after the previous kernel of this group
+/// and the previous one of the same part, so no two groups step, or learn, at the same time.
 template <class Launch>
 void advance_worlds(const DeviceWorlds& on, int64_t step, int64_t steps, Launch&& launch) {
+  const int32_t groups = group_count(on);
   while (steps > 0) {
     const int64_t left = on.window - step % on.window;
     const int64_t stretch = left < steps ? left : steps;
-    launch(StepWorlds{on, stretch}, StepWorlds::FLOATS);
+    for (int32_t g = 0; g < groups; ++g) {
+      const int32_t first = on.count * g / groups;
+      DeviceWorlds group = on;
+      group.worlds += first;
+      group.count = on.count * (g + 1) / groups - first;
+      launch(g, StepWorlds{group, first, stretch}, StepWorlds::FLOATS);
+      if (stretch < left) continue;
+      if (on.learning) launch(g, LearnWorlds{group, first}, learning_floats(on));
+      launch(g, CloseWindows{group}, CloseWindows::FLOATS);
+    }
     step += stretch;
     steps -= stretch;
-    if (stretch < left) continue;
-    if (on.learning) launch(LearnWorlds{on}, learning_floats(on));
-    launch(CloseWindows{on}, CloseWindows::FLOATS);
   }
 }
 

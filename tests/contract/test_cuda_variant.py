@@ -33,3 +33,16 @@ def test_a_variant_has_the_same_bits(variant: str, preset: str, monkeypatch: pyt
     for simulation in (one, other):
         simulation.run(37)
     assert [world.digest() for world in one.worlds] == [world.digest() for world in other.worlds]
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="the emulation is compiled for AVX2")
+def test_groups_of_worlds_that_run_at_the_same_time_have_the_same_bits(monkeypatch: pytest.MonkeyPatch):
+    """Kernels of several groups, and the threads of their blocks, are threads of the system."""
+    library = build(32, system_threads=True, variant="overlap_two_learners")
+    monkeypatch.setenv(EMULATION_VARIABLE, str(library))
+    tiny = ("world.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
+    sizes = ("population.capacity=6", "population.initial_count=4")
+    one, other = (make_simulation(*tiny, *sizes, seeds=tuple(range(6)), backend=each) for each in ("avx2", EMULATED))
+    for simulation in (one, other):
+        simulation.run(9)
+    assert [world.digest() for world in one.worlds] == [world.digest() for world in other.worlds]

@@ -32,8 +32,10 @@ def test_without_a_device_one_sentence_is_said():
 
 
 @pytest.mark.long
-def test_the_script_runs_on_the_emulated_device(tmp_path):
-    command = [sys.executable, str(ROOT / "tests" / "device.py"), "--emulate", "--out", str(tmp_path / "device.json")]
+@pytest.mark.parametrize("options", [(), ("--variants",)])
+def test_the_script_runs_on_the_emulated_device(tmp_path, options: tuple[str, ...]):
+    out = ("--out", str(tmp_path / "device.json"))
+    command = [sys.executable, str(ROOT / "tests" / "device.py"), "--emulate", *options, *out]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stdout + answer.stderr
 
