@@ -17,6 +17,7 @@ from command import hedon
 from typer.testing import CliRunner
 from view_page import record, run_server, serving
 
+from hedon import branch
 from hedon.cli.main import app
 from hedon.config.load import load_config
 from hedon.record.error import RecordError
@@ -182,6 +183,15 @@ def test_a_live_world_with_a_rule_in_python_is_refused(tmp_path):
 
 def test_the_command_wants_a_run_or_a_live_world():
     assert "--live" in str(CliRunner().invoke(app, ["view"]).exception)
+
+
+def test_a_branch_has_no_moments_before_its_start(folder, tmp_path):
+    steps = open_run(folder).manifest.steps_done[0]
+    branch(folder, tmp_path / "branch", steps=steps + 64)
+    run = open_run(tmp_path / "branch")
+    assert fragment(run, steps, None, None) == f"#world=0&step={steps}"
+    with pytest.raises(ViewError, match=f"--step 0: the world of seed 1 starts at step {steps}"):
+        fragment(run, 0, None, None)
 
 
 def test_the_link_leads_to_a_moment(folder):
