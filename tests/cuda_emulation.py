@@ -7,6 +7,7 @@ import platform
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from project_files import ROOT
@@ -66,13 +67,21 @@ def build(threads: int = THREADS, *, system_threads: bool = False, variant: str 
     return library
 
 
-@pytest.fixture
-def emulated(monkeypatch: pytest.MonkeyPatch) -> str:
-    """The name of the emulated device, ready for `Simulation(backend=…)`; a test that asks for it needs AVX2."""
+def emulate(monkeypatch: pytest.MonkeyPatch, *arguments: Any, **options: Any) -> str:
+    """The name of the emulated device, ready for `Simulation(backend=…)`; the test is skipped without AVX2.
+
+    Arguments and options are those of `build`.
+    """
     if platform.machine() != "x86_64":
         pytest.skip("the emulation is compiled for AVX2, and compared with it")
-    monkeypatch.setenv(EMULATION_VARIABLE, str(build()))
+    monkeypatch.setenv(EMULATION_VARIABLE, str(build(*arguments, **options)))
     return EMULATED
+
+
+@pytest.fixture
+def emulated(monkeypatch: pytest.MonkeyPatch) -> str:
+    """The name of the emulated device, with the kernels of the library."""
+    return emulate(monkeypatch)
 
 
 if __name__ == "__main__":

@@ -8,11 +8,11 @@ import sys
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "engine" / "cuda"))
+
+import build
+
 ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(ROOT / "engine" / "cuda"))
-
-import build  # noqa: E402
-
 PLACE = ROOT / "build" / "device"
 CPU_OPTIONS = ("-std=c++20", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden", "-pthread")
 FOR_FILE = {

@@ -1,12 +1,8 @@
 """Every variant of the kernels of CUDA has the bits of AVX2 on the emulated device."""
 
-import platform
-
 import pytest
-from cuda_emulation import VARIANTS, build
+from cuda_emulation import VARIANTS, emulate
 from worlds import make_simulation
-
-from hedon.experiment.device import EMULATED, EMULATION_VARIABLE
 
 SHORT = ("world.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
 SIZES = {"capacity": 12, "initial_count": 6}
@@ -20,29 +16,26 @@ SEEDS = {"baseline": range(1, 10), "predator": range(1, 3)}
 """More worlds than the emulated devices have learners at once, so that variants with groups of worlds have several."""
 
 
-@pytest.mark.skipif(platform.machine() != "x86_64", reason="the emulation is compiled for AVX2")
 @pytest.mark.parametrize("preset", SETTINGS)
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_a_variant_has_the_same_bits(variant: str, preset: str, monkeypatch: pytest.MonkeyPatch):
     """Two windows, and the beginning of the third."""
-    monkeypatch.setenv(EMULATION_VARIABLE, str(build(variant=variant)))
+    emulated = emulate(monkeypatch, variant=variant)
     one, other = (
         make_simulation(*SHORT, *SETTINGS[preset], preset=preset, seeds=tuple(SEEDS[preset]), backend=backend)
-        for backend in ("avx2", EMULATED)
+        for backend in ("avx2", emulated)
     )
     for simulation in (one, other):
         simulation.run(37)
     assert [world.digest() for world in one.worlds] == [world.digest() for world in other.worlds]
 
 
-@pytest.mark.skipif(platform.machine() != "x86_64", reason="the emulation is compiled for AVX2")
 def test_groups_of_worlds_that_run_at_the_same_time_have_the_same_bits(monkeypatch: pytest.MonkeyPatch):
     """Kernels of several groups, and the threads of their blocks, are threads of the system."""
-    library = build(32, system_threads=True, variant="overlap_two_learners")
-    monkeypatch.setenv(EMULATION_VARIABLE, str(library))
+    emulated = emulate(monkeypatch, 32, system_threads=True, variant="overlap_two_learners")
     tiny = ("world.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
     sizes = ("population.capacity=6", "population.initial_count=4")
-    one, other = (make_simulation(*tiny, *sizes, seeds=tuple(range(6)), backend=each) for each in ("avx2", EMULATED))
+    one, other = (make_simulation(*tiny, *sizes, seeds=tuple(range(6)), backend=each) for each in ("avx2", emulated))
     for simulation in (one, other):
         simulation.run(9)
     assert [world.digest() for world in one.worlds] == [world.digest() for world in other.worlds]

@@ -5,13 +5,12 @@ The kernels sum in the order of the CPU's, so equality is exact: of all state, a
 
 import numpy as np
 import pytest
-from cuda_emulation import build
+from cuda_emulation import emulate
 from cuda_emulation import emulated as emulated
 from two_stores import FED
 from worlds import QUICK, RELEASED, make_simulation, set_scene
 
 from hedon.error import EngineError
-from hedon.experiment.device import EMULATION_VARIABLE
 from hedon.experiment.simulation import Simulation
 
 SHORT = ("world.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
@@ -117,9 +116,9 @@ def test_queries_of_two_species_have_the_same_bits(emulated: str):
     require_equal(one, other)
 
 
-def test_threads_that_run_at_the_same_time_have_the_same_bits(emulated: str, monkeypatch: pytest.MonkeyPatch):
-    """A barrier that is missing shows where fibers, which take turns, would hide it."""
-    monkeypatch.setenv(EMULATION_VARIABLE, str(build(32, system_threads=True)))
+def test_threads_that_run_at_the_same_time_have_the_same_bits(monkeypatch: pytest.MonkeyPatch):
+    """A missing barrier shows here; fibers, which take turns, would hide it."""
+    emulated = emulate(monkeypatch, 32, system_threads=True)
     short = ("world.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
     one, other = pair(emulated, *short, "population.capacity=6", "population.initial_count=4")
     one.run(5)
