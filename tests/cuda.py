@@ -1,9 +1,9 @@
-"""Compiles the CUDA part, and compares what the compiler says of each kernel, and what its machine code costs, with the
-tables that are kept.
+"""Compiles the CUDA part, and compares the compiler's report on each kernel, and the cost of its machine code, with the
+committed tables.
 
 `python tests/cuda.py [--write]`, with the compiler of the package `nvidia-cuda-nvcc`; with `--variants`, every variant
-of the kernels instead of the one that the library has. No device is needed, and none is used. Machine code is made anew
-only where the engine's sources or the compiler changed: it takes two minutes for each variant.
+of the kernels instead of the one in the library. It neither needs nor uses a device. Code is compiled again only if the
+engine's sources or the compiler changed, which takes two minutes for each variant.
 """
 
 import hashlib
@@ -169,7 +169,7 @@ def check_variants(nvcc: Path, write: bool) -> list[str]:
     if write:
         VARIANTS.write_text(json.dumps(found, indent=2) + "\n")
     kept = json.loads(VARIANTS.read_text())
-    wrong = [f"{name}: it is in one of source and table alone" for name in sorted(found.keys() ^ kept.keys())]
+    wrong = [f"{name}: it is only in the source or only in the table" for name in sorted(found.keys() ^ kept.keys())]
     for variant in sorted(found.keys() & kept.keys()):
         wrong += [f"{variant}: {line}" for line in problems(found[variant], kept[variant])]
     return wrong
