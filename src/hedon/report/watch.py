@@ -1,4 +1,4 @@
-"""The sentence of a report on how to watch a run, and from which step on."""
+"""The sentence of a report on how to watch a run, and from which step."""
 
 from dataclasses import dataclass
 
@@ -6,8 +6,8 @@ import polars as pl
 
 from hedon.record.reader import Run
 
-SHARE = 20
-"""The largest change is sought over this fraction of the records."""
+PARTS = 20
+"""Number of equal parts into which the records are divided; the largest change is sought over the length of one."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,8 @@ def largest_change(run: Run, seed: int) -> WeightChange | None:
 
 
 def _changes(rows: pl.DataFrame, weights: tuple[str, ...]) -> list[tuple[float, int, int, str]]:
-    """The largest change of each weight, with its first and last step; none where a mean is not known."""
-    distance = max(rows.height // SHARE, 1)
+    """The largest change of each weight, with its first and last step; none for a weight without means."""
+    distance = max(rows.height // PARTS, 1)
     changes = []
     for weight in weights:
         column = pl.col(f"{weight}_mean")
