@@ -285,10 +285,12 @@ struct RewardConfig {
   RewardFamily family;
   float threshold;  ///< [that of the gate]
   float threshold_width;  ///< [that of the gate]
+  float drive_exponent;
+  float drive_root;
   int32_t memory;
-  HEDON_FIELDS(RewardConfig, family, threshold, threshold_width, memory)
-  static constexpr Limit LIMITS[] = {Limit(), Limit::from(-1000000, 1000000), Limit::over(0, 1000000), Limit::from(0,
-      16)};
+  HEDON_FIELDS(RewardConfig, family, threshold, threshold_width, drive_exponent, drive_root, memory)
+  static constexpr Limit LIMITS[] = {Limit(), Limit::from(-1000000, 1000000), Limit::over(0, 1000000), Limit::from(1,
+      8), Limit::from(1, 8), Limit::from(0, 16)};
 };
 
 HEDON_ENUM(LearningPolicy, ppo, random, idle, external, fixed)

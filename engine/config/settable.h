@@ -38,7 +38,9 @@ HEDON_ENUM(GenomeSet, body_radius,
       birth_logit_offset,
       birth_distance_sd,
       birth_network_noise,
-      birth_mating_range)
+      birth_mating_range,
+      reward_drive_exponent,
+      reward_drive_root)
 
 /// A number that a gene sets, with its limits.
 struct SettableNumber {
@@ -79,6 +81,8 @@ HEDON_FN SettableNumber settable(SpeciesConfig& config, GenomeSet which, int32_t
     case GenomeSet::birth_distance_sd: break;
     case GenomeSet::birth_network_noise: return {&config.birth.network_noise, 0.0f, 10.0f};
     case GenomeSet::birth_mating_range: return {&config.birth.mating_range, 0.0f, 10000.0f};
+    case GenomeSet::reward_drive_exponent: return {&config.reward.drive_exponent, 1.0f, 8.0f};
+    case GenomeSet::reward_drive_root: return {&config.reward.drive_root, 1.0f, 8.0f};
   }
   return {nullptr, 0.0f, 0.0f};
 }

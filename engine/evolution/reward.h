@@ -9,19 +9,27 @@
 
 namespace hedon {
 
-/// Drive: the distance of the stores from their set points, relative to their measures. held(s) and measure(s) give the
+/// base^exponent, for a base of at least 0 and an exponent above 0.
+HEDON_FN double power(double base, double exponent) {
+  return base > 0.0 ? exp_double(exponent * log_double(base)) : 0.0;
+}
+
+/// Drive: (Σ |set point − held|^n)^(1/m) over the stores, each relative to its measure. held(s) and measure(s) give the
 /// amount and the measure of store `s`. Source: Keramati and Gutkin (2014).
 template <class Held, class Measure>
-HEDON_FN double drive(const SpeciesLayout& layout, const float* genome, Held&& held, Measure&& measure) {
-  double squared = 0.0, only = 0.0;
+HEDON_FN double drive(const RewardConfig& config, const SpeciesLayout& layout, const float* genome, Held&& held,
+                      Measure&& measure) {
+  const bool is_euclidean = config.drive_exponent == 2.0f && config.drive_root == 2.0f;
+  double sum = 0.0, only = 0.0;
   int32_t count = 0;
   for (int32_t s = 0; s < layout.set_points.count; ++s) {
     if (layout.set_points[s] < 0) continue;
     only = static_cast<double>(genome[layout.set_points[s]]) - held(s) / measure(s);
-    squared += only * only;
+    sum += is_euclidean ? only * only : power(fabs(only), config.drive_exponent);
     ++count;
   }
-  return count == 1 ? fabs(only) : sqrt(squared);
+  if (!is_euclidean) return power(sum, 1.0 / config.drive_root);
+  return count == 1 ? fabs(only) : sqrt(sum);
 }
 
 HEDON_FN double logistic(double x) { return 1.0 / (1.0 + exp_double(-x)); }

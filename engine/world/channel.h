@@ -77,10 +77,10 @@ HEDON_FN double drive_reduction(const World& world, int32_t slot) {
     return static_cast<double>(store.motor_threshold > 0.0f ? store.motor_threshold : store.capacity);
   };
   const double* before = world.held_before(slot);
-  const float* genome = world.genome(slot);
-  return drive(
-             species.layout, genome, [&](int32_t i) { return before[i]; }, measure) -
-         drive(species.layout, genome, [&](int32_t i) { return world.held(slot, i); }, measure);
+  const auto drive_at = [&](auto&& held) {
+    return drive(species.config.reward, species.layout, world.genome(slot), held, measure);
+  };
+  return drive_at([&](int32_t i) { return before[i]; }) - drive_at([&](int32_t i) { return world.held(slot, i); });
 }
 
 /// Sine (0) or cosine (1) of the time of the year.

@@ -50,7 +50,7 @@ MECHANISMS = {
     "stores": (
         *FED,
         "food.normal.needs.nutrient=1",
-        "reward.drive_reduction_coef=1",
+        *("reward.drive_reduction_coef=1", "reward.drive_exponent=3", "genome.set.reward.drive_root.initial_sd=0.1"),
         "sensor.mouth_spread=180",
     ),
     "channels": (

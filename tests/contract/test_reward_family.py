@@ -79,6 +79,35 @@ def test_drive_reduction_is_by_how_much_energy_comes_closer_to_the_set_point(set
     assert found == pytest.approx(sign * 3 * cost / capacity, rel=1e-5)
 
 
+@pytest.mark.parametrize(("exponent", "root"), [(4, 3), (1, 1), (3, 2), (2, 1)])
+def test_the_drive_has_the_exponent_and_the_root_of_its_settings(exponent, root):
+    """As in Keramati and Gutkin (2014), who write n and m."""
+    energy, water = load_config("baseline").species["agent"].energy.capacity, 8.0
+    found = paid(
+        *STILL,
+        "reward.drive_reduction_coef=1000",
+        f"reward.drive_exponent={exponent}",
+        f"reward.drive_root={root}",
+        "energy.set_point.initial_mean=0.9",
+        "energy.basic_cost=2",
+        f"store.water={{capacity={water}, initial={water}, basic_cost=0.5}}",
+        *("store.water.set_point.initial_mean=0.6", "store.water.set_point.initial_sd=0"),
+        *("energy.action_cost=0", "reward.action_coef=0"),
+        steps=3,
+    )
+
+    def drive(step: int) -> float:
+        apart = (abs(0.9 - (ENERGY - 2 * step) / energy), abs(0.6 - (water - 0.5 * step) / water))
+        return sum(each**exponent for each in apart) ** (1 / root)
+
+    assert found == pytest.approx([1000 * (drive(step) - drive(step + 1)) for step in range(3)], rel=1e-3)
+
+
+def test_the_exponents_of_a_drive_are_refused_as_genes_where_there_is_none():
+    with pytest.raises(ConfigError, match=r"no drive is reduced: give reward\.drive_reduction_coef"):
+        load_config("baseline", overrides=["genome.set.reward.drive_exponent={}"])
+
+
 def test_what_a_birth_takes_is_no_drive_reduction():
     capacity = load_config("baseline").species["agent"].energy.capacity
     simulation = make_simulation(

@@ -62,7 +62,7 @@ WORLD = (
     ),
     *("store.water={capacity=1, initial=1, basic_cost=0.01, action_cost=1e-5, decay=0.01}",),
     *("store.water.child_share=0.3", "store.water.hazard_weight=0.5", "store.water.motor_threshold=0.3"),
-    "store.water.birth_weight=3",
+    *("store.water.birth_weight=3", "reward.drive_reduction_coef=3"),
     *("species.plain.body.radius=9", "species.own.body.radius=8"),
 )
 PATHS = [

@@ -75,12 +75,12 @@ def channel(rules: Rules, world: World, turn: Turn, name: str) -> float:
 
 
 def drive(species: Species, agent: Agent) -> float:
-    """Distance of the stores from their set points, in shares of their capacities, or of where they weaken motors."""
+    """How far the stores are from their set points, in shares of their capacities, or of where they weaken motors."""
     apart = []
     for name, store in species.stores.items():
         point = species.gene(agent.genome, "set_point" if name == "energy" else f"set_point_{name}")
-        apart.append(point - agent.held[name] / (store.motor_threshold or store.capacity))
-    return math.hypot(*apart)
+        apart.append(abs(point - agent.held[name] / (store.motor_threshold or store.capacity)))
+    return sum(each**species.reward.drive_exponent for each in apart) ** (1 / species.reward.drive_root)
 
 
 def felt_sectors(species: Species, turn: Turn, types: range | list[int]) -> float:

@@ -199,6 +199,16 @@ INNER = {
         ),
         {"paid_drive_reduction": 1000, "eaten": 10},
     ),
+    "exponents of the drive": Case(
+        "a drive with exponents of its own, one of them a gene",
+        (
+            *STORES,
+            *("food.normal.gives.nutrient=1", "store.nutrient.initial=1", "store.nutrient.capacity=3"),
+            *("energy.capacity=6", "reward.drive_reduction_coef=2", "reward.drive_exponent=4", "reward.drive_root=3"),
+            *("energy.set_point.initial_sd=0.3", "genome.set.reward.drive_exponent={initial_sd=0.2}"),
+        ),
+        {"paid_drive_reduction": 1000, "eaten": 10},
+    ),
     "relief by energy": Case(
         "relief with energy alone, beside the other terms",
         ("reward.drive_reduction_coef=1.5", "energy.capacity=8", 'diet.eats=[["normal", 0.7]]'),

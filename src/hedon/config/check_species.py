@@ -286,7 +286,10 @@ def _settable(check: Check, species: SpeciesConfig, place: str, path: str) -> No
 def _idle(species: SpeciesConfig) -> dict[str, str]:
     """Numbers that have no effect in a species, each with the reason."""
     birth, sensor = species.birth, species.sensor
+    driven = "" if species.reward.drive_reduction_coef else "no drive is reduced: give reward.drive_reduction_coef"
     reasons = {
+        "reward.drive_exponent": driven,
+        "reward.drive_root": driven,
         "sensor.smell_decay": "" if sensor.smells else "it smells nothing: give sensor.smells",
         "sensor.nose_angle": "" if sensor.noses == 2 else "its nose lies ahead: give sensor.noses = 2",
         "birth.network_noise": "" if birth.network != "none" else "children inherit no network: give birth.network",

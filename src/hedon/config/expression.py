@@ -21,7 +21,8 @@ CONVERTED = ("motor.force_scale", "birth.distance_sd")
 NO_GENE = {
     "initial": "founders have it before they have genes",
     "population": "founders have it before they have genes",
-    "reward": "genome.family has genes of the threshold of a reward, and its weights are genes",
+    "threshold": "genome.family has genes of the threshold of a reward",
+    "threshold_width": "genome.family has genes of the threshold of a reward",
     "learning": "genome.learning has genes of learning",
 }
 """Settings and sections that genes cannot set, with the reason."""

@@ -64,8 +64,8 @@ class GenomeConfig:
     learning rate, the odds of the discount gamma/(1 - gamma), the entropy coefficient, or the spread of a newborn's
     actions, by 10^g. `[genome.family.NAME]` does the same for threshold or threshold_width of the reward family.
     `[genome.set.PATH]`, such as `[genome.set.sensor.ray_length]`, does so for a number of the body, the senses, the
-    motors, the stores, the hazard or births, within the limits of its setting; the gene is named g_PATH, with `_` for
-    each dot.
+    motors, the stores, the hazard, births or the drive, within the limits of its setting; the gene is named g_PATH,
+    with `_` for each dot.
 
     `[genome.extra.NAME]` adds a gene extra_NAME that only rules in Python read (guide/rule.md).
     `[genome.mutation.GENE]` gives one gene its own mutation.
@@ -155,6 +155,10 @@ class RewardConfig:
         le=1e3,
         derived=True,
     )
+    drive_exponent: float = setting(
+        2.0, "n of the drive (Σ |set point - held|^n)^(1/m) that drive reduction lowers", "", OURS, ge=1, le=8
+    )
+    drive_root: float = setting(2.0, "m of this drive", "", OURS, ge=1, le=8)
     action_coef: float = setting(0.01, "factor of the action term", "", EITHER, ge=-1e3, le=1e3, derived=True)
     action_norm: Literal["max_force", "none"] = setting(
         "max_force",
