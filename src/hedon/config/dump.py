@@ -16,9 +16,9 @@ SCHEMA = "1"
 """Version of the config schema: which settings exist and what they mean. It enters each digest, and complete files of
 other versions are refused."""
 
-LATER = (".looks_like",)
-"""Endings of the paths of settings added to this schema. If such a setting is off, digests omit it and complete files
-may lack it, so older runs can still be read and resumed."""
+LATER: Mapping[str, Any] = {".looks_like": "", ".drive_exponent": 2.0, ".drive_root": 2.0}
+"""Endings of the paths of settings added to this schema, with the values of worlds from before. Digests omit a setting
+that has this value, and complete files may lack it, so older runs can still be read and resumed."""
 
 _HEAD = "# Complete: this file has every setting; none comes from the preset or the fidelity.\n"
 
@@ -105,8 +105,9 @@ class Fingerprint:
 
 
 def _row(path: str, value: Any) -> str:
-    """A setting's part of the digest; empty if the setting was added to the schema and is off."""
-    return json.dumps([path, value]) if value or not path.endswith(LATER) else ""
+    """A setting's part of the digest; empty if the setting was added to the schema and is as before."""
+    is_as_before = any(path.endswith(ending) and value == before for ending, before in LATER.items())
+    return "" if is_as_before else json.dumps([path, value])
 
 
 def diff(a: Settings, b: Settings) -> list[tuple[str, Any, Any]]:

@@ -276,7 +276,7 @@ def _require_complete(config: Config, tables: Table, origin: str) -> None:
     problems = [
         Problem(path, f"is missing in a file that says it is complete; {setting.allowed}")
         for path, setting, _ in leaves(config)
-        if path not in PROVENANCE and not path.endswith(LATER) and not _says(tables, path)
+        if path not in PROVENANCE and not path.endswith(tuple(LATER)) and not _says(tables, path)
     ]
     if problems:
         raise ConfigError(origin, folded(problems, tuple(config.species)))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hedon.config import FIDELITIES, PRESETS, ConfigError, diff, digest, dump_toml, load_config
 from hedon.config import field as doc
 from hedon.config.config import Config
-from hedon.config.dump import flatten, section_paths
+from hedon.config.dump import LATER, flatten, section_paths
 from hedon.config.load import parse_config
 from hedon.config.schema.evolution import GeneConfig, MutationConfig, PayConfig
 from hedon.config.schema.schedule import ScheduleConfig
@@ -225,3 +225,15 @@ def test_what_is_no_config_and_no_path_is_refused():
         diff(config, cast(Any, 3))
     with pytest.raises(ArgumentError, match=r"path: must be that of a setting, such as energy\.initial, not 3"):
         config.with_(cast(Any, 3), 4)
+
+
+def test_complete_files_from_before_a_setting_was_added_still_load(tmp_path):
+    config = load_config("baseline")
+    endings = tuple(f"{ending.removeprefix('.')} = " for ending in LATER)
+    lines = dump_toml(config).splitlines()
+    older = [line for line in lines if not line.startswith(endings)]
+    assert len(lines) - len(older) == len(LATER)
+    path = tmp_path / "older.toml"
+    path.write_text("\n".join(older), encoding="utf-8")
+    assert load_config(path) == config
+    assert digest(config.with_("reward.drive_root", 3.0)) != digest(config)
