@@ -4,6 +4,8 @@ import pytest
 from cuda_emulation import VARIANTS, emulate
 from worlds import make_simulation
 
+QUICK = (VARIANTS[0], VARIANTS[-1])
+"""The default, and the variant that differs most; `make test-long` builds all, each in a quarter of a minute."""
 SHORT = ("world.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
 SIZES = {"capacity": 12, "initial_count": 6}
 SETTINGS = {
@@ -17,7 +19,9 @@ SEEDS = {"baseline": range(1, 10), "predator": range(1, 3)}
 
 
 @pytest.mark.parametrize("preset", SETTINGS)
-@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize(
+    "variant", [pytest.param(each, marks=() if each in QUICK else pytest.mark.long) for each in VARIANTS]
+)
 def test_a_variant_has_the_same_bits(variant: str, preset: str, monkeypatch: pytest.MonkeyPatch):
     """Two windows, and the beginning of the third."""
     emulated = emulate(monkeypatch, variant=variant)

@@ -117,6 +117,7 @@ def test_a_world_of_pettingzoo_never_ends():
     assert world.simulation.worlds[0].counters["deaths"] == died
 
 
+@pytest.mark.more
 def test_a_device_keeps_the_same(emulated: str):
     processor, device = make("avx2"), make(emulated)
     for simulation in (processor, device):
