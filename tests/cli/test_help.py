@@ -17,3 +17,9 @@ def test_the_help_fits_one_screen():
     lines = hedon("--help").stdout.splitlines()
     assert len(lines) <= 45
     assert not [line for line in lines[2:] if line.endswith("...")], "nothing is cut off"
+
+
+def test_the_command_alone_shows_its_help():
+    alone = hedon()
+    assert (alone.stdout, alone.returncode) == ("", 2)
+    assert alone.stderr.splitlines()[1:] == hedon("--help").stdout.splitlines()[1:]

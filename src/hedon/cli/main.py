@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from itertools import pairwise
 from typing import Annotated, Any, NoReturn
 
 import typer
@@ -176,7 +177,7 @@ def _refuse_gone(words: Sequence[str]) -> None:
 
 def _refuse_empty(words: Sequence[str]) -> None:
     """Ends a command line with an empty option, such as from an unset variable."""
-    for word, following in zip(words, [*words[1:], "-"], strict=True):
+    for word, following in pairwise([*words, "-"]):
         option, equals, value = word.partition("=")
         if option.startswith("--") and not (value if equals else following):
             fail(f"{option}: is empty")

@@ -275,12 +275,13 @@ def open_run(path: Path | str) -> Run:
     """Opens a run's folder.
 
     Raises:
-        RecordError: It is not a run folder, its manifest or config cannot be read, or it contains a symbolic link.
+        RecordError: It does not exist or is not a run folder, its manifest or config cannot be read, or it contains a symbolic link.
     """
     folder = Path(path)
     require_unicode(folder)
     if not (folder / MANIFEST).is_file():
-        raise RecordError(f"{folder} is not a run folder: it has no {MANIFEST}{_nearest(folder)}")
+        problem = f"is not a run folder: it has no {MANIFEST}" if folder.exists() else "does not exist"
+        raise RecordError(f"{folder} {problem}{_nearest(folder)}")
     require_plain(folder)
     try:
         config_text = (folder / CONFIG).read_text(encoding="utf-8")

@@ -316,8 +316,8 @@ def test_a_replay_finds_what_was_not_computed(run: Path) -> None:
 
 
 def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
-    for folder in (tmp_path, tmp_path / "nowhere"):
-        with pytest.raises(RecordError, match="is not a run folder"):
+    for folder, problem in ((tmp_path, "is not a run folder"), (tmp_path / "nowhere", "does not exist")):
+        with pytest.raises(RecordError, match=problem):
             check_run(folder)
 
 

@@ -90,14 +90,17 @@ def test_revision_outside_of_a_checkout(tmp_path: Path) -> None:
 
 def test_not_a_run_folder_names_the_nearest(tmp_path: Path) -> None:
     write_run(tmp_path / "runs" / "baseline", intervals=1, worlds=1)
-    with pytest.raises(RecordError, match=r"not a run folder.*did you mean .*runs.baseline\?"):
+    (empty_folder := tmp_path / "elsewhere" / "empty").mkdir(parents=True)
+    with pytest.raises(RecordError, match=r"does not exist; did you mean .*runs.baseline\?"):
         open_run(tmp_path / "runs" / "basline")
-    with pytest.raises(RecordError, match=r"did you mean .*runs.baseline\?"):
+    with pytest.raises(RecordError, match=r"not a run folder.*did you mean .*runs.baseline\?"):
         open_run(tmp_path / "runs")
     with pytest.raises(RecordError, match=r"did you mean .*runs.baseline\?"):
         open_run(tmp_path / "runs" / "baseline" / "agents")
-    with pytest.raises(RecordError, match=r"not a run folder: it has no manifest.json$"):
+    with pytest.raises(RecordError, match=r"x does not exist$"):
         open_run(tmp_path / "elsewhere" / "x")
+    with pytest.raises(RecordError, match=r"not a run folder: it has no manifest.json$"):
+        open_run(empty_folder)
 
 
 def test_a_run_without_config_is_named(tmp_path: Path) -> None:
