@@ -71,6 +71,8 @@ test-long: sync
 
 # Removes nothing: what tests need stays.
 sync: tools $(UV)
+	@test -d "$${UV_PROJECT_ENVIRONMENT:-.venv}" || \
+	  echo "installing hedon into this folder and building its engine: one to two minutes on two free cores"
 	$(UV) sync --quiet --inexact
 
 # What has to be there already, each with the advice that helps where it is not.

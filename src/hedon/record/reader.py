@@ -275,7 +275,8 @@ def open_run(path: Path | str) -> Run:
     """Opens a run's folder.
 
     Raises:
-        RecordError: It does not exist or is not a run folder, its manifest or config cannot be read, or it contains a symbolic link.
+        RecordError: It does not exist or is not a run folder, its manifest or config cannot be read, or it contains a
+            symbolic link.
     """
     folder = Path(path)
     require_unicode(folder)

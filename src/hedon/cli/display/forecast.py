@@ -10,6 +10,7 @@ from hedon.cli.display.analysis import analysis_group
 from hedon.config import Config
 from hedon.demography.forecast import Forecast
 from hedon.demography.intake import FACTOR, FORECAST_STEPS
+from hedon.text import count
 
 _FEEDING = {
     "unlearned": "they never learn",
@@ -30,13 +31,14 @@ def _forecast_tables(config: Config, species: str, found: Forecast, steps: int) 
         }
         for level in found.levels
     ]
-    fed = "no limit" if math.isinf(found.fed) else f"{found.fed:,.0f} agents"
-    food = "it eats no food" if math.isnan(found.fed) else f"{found.supply:g} grow per step: enough for {fed}"
+    fed = "no limit" if math.isinf(found.fed) else count(round(found.fed), "agent")
+    food = "it eats no food" if math.isnan(found.fed) else f"{found.supply:g} foods grow per step, enough for {fed}"
     cost = config.species[species].energy.basic_cost
     note = (
         f"A fresh policy pays {found.need:.2e} per step ({cost:g} for living, the rest for a mean "
-        f"force of {found.force:.1f}); {food}. R0 counts the children tried; "
-        "refusals are births without a place. Room allows as many agents as leave R0 at 1."
+        f"force of {found.force:.1f}); {food}. R0 is the number "
+        "of children that an agent tries to have; refusals are births without a place. Room allows as many agents as "
+        "leave R0 at 1."
     )
     room = [{"agents in the arena": place.alive, "births that find a place": place.success} for place in found.room]
     sampled = "Sampled, with agents and foods thrown at random. In a run agents gather, and fewer places are free."
@@ -58,9 +60,9 @@ def _intake_table(found: Forecast) -> ResultTable:
             "places": each.places,
             "grows per step": each.growth,
             "eaten per step": each.eaten,
-            "from": each.low,
-            "to": each.high,
-            "lies there": each.present,
+            "at least": each.low,
+            "at most": each.high,
+            "present": each.present,
         }
         for each in found.intake
     ]
