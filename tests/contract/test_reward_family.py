@@ -103,8 +103,8 @@ def test_the_drive_has_the_exponent_and_the_root_of_its_settings(exponent, root)
     assert found == pytest.approx([1000 * (drive(step) - drive(step + 1)) for step in range(3)], rel=1e-3)
 
 
-def test_the_exponents_of_a_drive_are_refused_as_genes_where_there_is_none():
-    with pytest.raises(ConfigError, match=r"no drive is reduced: give reward\.drive_reduction_coef"):
+def test_the_exponents_of_a_drive_are_refused_as_genes_without_a_drive():
+    with pytest.raises(ConfigError, match=r"there is no drive: give reward\.drive_reduction_coef"):
         load_config("baseline", overrides=["genome.set.reward.drive_exponent={}"])
 
 

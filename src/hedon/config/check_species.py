@@ -286,7 +286,7 @@ def _settable(check: Check, species: SpeciesConfig, place: str, path: str) -> No
 def _idle(species: SpeciesConfig) -> dict[str, str]:
     """Numbers that have no effect in a species, each with the reason."""
     birth, sensor = species.birth, species.sensor
-    driven = "" if species.reward.drive_reduction_coef else "no drive is reduced: give reward.drive_reduction_coef"
+    driven = "" if species.reward.drive_reduction_coef else "there is no drive: give reward.drive_reduction_coef"
     reasons = {
         "reward.drive_exponent": driven,
         "reward.drive_root": driven,

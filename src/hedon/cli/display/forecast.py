@@ -36,9 +36,8 @@ def _forecast_tables(config: Config, species: str, found: Forecast, steps: int) 
     cost = config.species[species].energy.basic_cost
     note = (
         f"A fresh policy pays {found.need:.2e} per step ({cost:g} for living, the rest for a mean "
-        f"force of {found.force:.1f}); {food}. R0 is the number "
-        "of children that an agent tries to have; refusals are births without a place. Room allows as many agents as "
-        "leave R0 at 1."
+        f"force of {found.force:.1f}); {food}. R0 is the number of children that an agent tries to have; refusals are "
+        "births without a place. Room allows as many agents as leave R0 at 1."
     )
     room = [{"agents in the arena": place.alive, "births that find a place": place.success} for place in found.room]
     sampled = "Sampled, with agents and foods thrown at random. In a run agents gather, and fewer places are free."

@@ -156,9 +156,9 @@ class RewardConfig:
         derived=True,
     )
     drive_exponent: float = setting(
-        2.0, "n of the drive (Σ |set point - held|^n)^(1/m) that drive reduction lowers", "", OURS, ge=1, le=8
+        2.0, "exponent n of the drive (Σ |set point - held|^n)^(1/m), whose decrease is paid for", "", OURS, ge=1, le=8
     )
-    drive_root: float = setting(2.0, "m of this drive", "", OURS, ge=1, le=8)
+    drive_root: float = setting(2.0, "root m of that drive", "", OURS, ge=1, le=8)
     action_coef: float = setting(0.01, "factor of the action term", "", EITHER, ge=-1e3, le=1e3, derived=True)
     action_norm: Literal["max_force", "none"] = setting(
         "max_force",
