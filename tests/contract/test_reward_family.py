@@ -106,6 +106,8 @@ def test_the_drive_has_the_exponent_and_the_root_of_its_settings(exponent, root)
 def test_the_exponents_of_a_drive_are_refused_as_genes_without_a_drive():
     with pytest.raises(ConfigError, match=r"there is no drive: give reward\.drive_reduction_coef"):
         load_config("baseline", overrides=["genome.set.reward.drive_exponent={}"])
+    with pytest.raises(ConfigError, match=r"no gene can set this: .* and its weights are genes"):
+        load_config("baseline", overrides=["genome.set.reward.meal_coef={}"])
 
 
 def test_what_a_birth_takes_is_no_drive_reduction():

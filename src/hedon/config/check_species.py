@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 
 from hedon.config.channel import QUERIED, SOURCES, called, known_channels, plain_channels
-from hedon.config.expression import NO_GENE, expressed, settable
+from hedon.config.expression import DRIVE, NO_GENE, expressed, settable
 from hedon.config.field import leaves, value_at
 from hedon.config.layout import Gene, layout_of, rule_columns, store_columns
 from hedon.config.problem import Check, nearest, single
@@ -288,8 +288,7 @@ def _idle(species: SpeciesConfig) -> dict[str, str]:
     birth, sensor = species.birth, species.sensor
     driven = "" if species.reward.drive_reduction_coef else "there is no drive: give reward.drive_reduction_coef"
     reasons = {
-        "reward.drive_exponent": driven,
-        "reward.drive_root": driven,
+        **dict.fromkeys(DRIVE, driven),
         "sensor.smell_decay": "" if sensor.smells else "it smells nothing: give sensor.smells",
         "sensor.nose_angle": "" if sensor.noses == 2 else "its nose lies ahead: give sensor.noses = 2",
         "birth.network_noise": "" if birth.network != "none" else "children inherit no network: give birth.network",

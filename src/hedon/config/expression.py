@@ -21,11 +21,12 @@ CONVERTED = ("motor.force_scale", "birth.distance_sd")
 NO_GENE = {
     "initial": "founders have it before they have genes",
     "population": "founders have it before they have genes",
-    "threshold": "genome.family has genes of the threshold of a reward",
-    "threshold_width": "genome.family has genes of the threshold of a reward",
+    "reward": "genome.family has genes of the threshold of a reward, and its weights are genes",
     "learning": "genome.learning has genes of learning",
 }
 """Settings and sections that genes cannot set, with the reason."""
+DRIVE = ("reward.drive_exponent", "reward.drive_root")
+"""The numbers of a reward that genes can set all the same."""
 
 
 @cache
@@ -33,12 +34,13 @@ def settable() -> Mapping[str, Setting]:
     """Numbers of a species that genes can set, by path; numbers of stores under `store.<kind>`."""
     numbers: dict[str, Setting] = {}
     for section, inner in engine_sections(SpeciesConfig).items():
-        if section in NO_GENE or section == ENERGY:  # energy is one of the stores
+        if section == ENERGY:  # it is one of the stores
             continue
         place = f"{section}.<kind>" if inner.repeated else section
         for name, setting in settings(inner.type).items():
             reaches_engine = name in engine_settings(inner.type) or f"{section}.{name}" in CONVERTED
-            if setting.type is float and name not in NO_GENE and reaches_engine:
+            is_free = f"{place}.{name}" in DRIVE or not {section, name} & NO_GENE.keys()
+            if setting.type is float and is_free and reaches_engine:
                 numbers[f"{place}.{name}"] = setting
     return numbers
 
