@@ -117,7 +117,7 @@ class Writer:
         try:
             save_checkpoint(self.folder, replace(head, parts=parts), fill)
         except OSError as error:
-            self._fault = error
+            self._fault = self._cause(error)
             self._raise_fault()
 
     def save_fault(self, head: CheckpointHead, fill: Fill) -> None:
@@ -144,7 +144,10 @@ class Writer:
             RecordError: It cannot be written.
         """
         self.require_folder()
-        save_manifest(self.folder, manifest)
+        try:
+            save_manifest(self.folder, manifest)
+        except RecordError as error:
+            raise self._cause(error) from error
 
     def flush(self) -> None:
         """Waits until all rows so far are on disk.
@@ -233,9 +236,17 @@ class Writer:
                 try:
                     self._handle(item)
                 except Exception as error:  # _raise_fault raises it in the caller
-                    self._fault = error
+                    self._fault = self._cause(error)
             if isinstance(item, threading.Event):
                 item.set()
+
+    def _cause(self, error: Exception) -> Exception:
+        """The error itself, or that the folder is gone, if it vanished between the check and the write."""
+        try:
+            self.require_folder()
+        except RecordError as gone:
+            return gone
+        return error
 
     def _handle(self, item: object) -> None:
         self.require_folder()

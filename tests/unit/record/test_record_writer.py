@@ -123,6 +123,20 @@ def test_a_folder_that_is_removed_or_replaced_is_noticed_at_once(tmp_path: Path)
     assert [path.name for path in (tmp_path / "run").rglob("*")] == ["agents"], "nothing is written into the other"
 
 
+def test_a_folder_that_vanishes_between_the_check_and_the_write_is_told_the_same_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    writer = Writer(tmp_path / "run", "", MANIFEST)
+
+    def vanish() -> None:
+        (tmp_path / "run").rename(tmp_path / "moved")
+        raise FileNotFoundError
+
+    monkeypatch.setattr(writer._parts, "flush", vanish)
+    with pytest.raises(RecordError, match="was removed or replaced during the run"):
+        writer.flush()
+
+
 def test_refuses_a_folder_that_holds_a_run(tmp_path: Path) -> None:
     write_run(tmp_path / "run", intervals=1, worlds=1)
     before = sorted(path.stat().st_mtime_ns for path in (tmp_path / "run").rglob("*"))
