@@ -105,7 +105,7 @@ class Watched:
         if not url.startswith((origin, "data:", f"blob:{origin}")):
             self.faults.append(f"asked {url}")
 
-    def until(self, condition: str, seconds: float = 40.0) -> None:
+    def until(self, condition: str, seconds: float = 120.0) -> None:
         """Waits; by asking again and again, since the page's policy allows no code from strings."""
         end = time.monotonic() + seconds
         while not self.page.evaluate(f"!!({condition})"):
