@@ -45,6 +45,7 @@ STYLE: dict[Any, Any] = {
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
     "axes.titlepad": 8.0,
+    "axes.titley": 1.0,  # no axes has ticks above it, so titles need not make room for them
     "axes.labelsize": 9.0,
     "axes.labelcolor": INK,
     "axes.edgecolor": PALE,
@@ -167,6 +168,9 @@ def _lay_out(figure: Figure) -> None:
     """Lays out the parts of a figure once for all files, since this takes as long as drawing them."""
     engine = figure.get_layout_engine()
     if engine is not None:
+        for axes in figure.axes:
+            for spine in axes.spines.values():
+                spine.set_in_layout(False)  # axes and tick labels enclose it, and each asked places all ticks again
         engine.execute(figure)
         figure.set_layout_engine("none")
 

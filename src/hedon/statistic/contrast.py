@@ -18,8 +18,6 @@ Floats = NDArray[np.float64]
 
 PERMUTATIONS = 9_999
 _SEED = 20261124
-_EQUAL = 1e-9
-"""Relative difference below which two probabilities count as equal, since they are computed in different ways."""
 
 
 def fisher_mid_p(count: int, of: int, other_count: int, other_of: int) -> float:
@@ -36,11 +34,12 @@ def fisher_mid_p(count: int, of: int, other_count: int, other_of: int) -> float:
         other_count: Worlds of the second group with the property.
         other_of: Number of worlds in the second group.
     """
-    lowest, highest = max(0, count + other_count - other_of), min(of, count + other_count)
-    chances = stats.hypergeom.pmf(np.arange(lowest, highest + 1), of + other_of, count + other_count, of)
-    observed = float(chances[count - lowest])
-    is_less, is_equal = chances < observed * (1.0 - _EQUAL), np.abs(chances - observed) <= observed * _EQUAL
-    return float(chances[is_less].sum() + 0.5 * chances[is_equal].sum())
+    total = count + other_count
+    possible = range(max(0, total - other_of), min(of, total) + 1)
+    ways = [math.comb(of, first) * math.comb(other_of, total - first) for first in possible]  # exact, so ties are exact
+    observed = ways[count - possible.start]
+    halves = sum(2 * way for way in ways if way < observed) + observed * ways.count(observed)
+    return halves / (2 * math.comb(of + other_of, total))
 
 
 def difference_interval(values: Floats, others: Floats, level: float = LEVEL) -> tuple[float, float, float]:

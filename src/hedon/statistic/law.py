@@ -3,7 +3,11 @@
 Computed with `scipy.special`; the results are bit-identical to `scipy.stats`, which takes half a second to load.
 """
 
-from scipy import special
+from typing import Any
+
+from lazy_loader import load
+
+special: Any = load("scipy.special", suppress_warning=True)  # takes a fifth of a second to load
 
 
 def normal_quantile(share: float) -> float:

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 import polars as pl
+from lazy_loader import load
 from numpy.typing import NDArray
-from scipy import special
 
 from hedon.analysis.agent.lifetime import durations
 from hedon.analysis.descent.genealogy import genealogy
@@ -21,6 +21,8 @@ from hedon.analysis.descent.walk import is_mutated, mutation_law
 from hedon.analysis.world.record import WorldRecord
 from hedon.statistic.bootstrap import REPLICATES, percentile_interval, resampled_sums
 from hedon.statistic.law import normal_above
+
+special: Any = load("scipy.special", suppress_warning=True)  # takes a fifth of a second to load
 
 OUTCOMES = ("food", "lifespan", "children")
 SCALES = ("clipped", "rank")

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from hedon.analysis.world.record import WorldRecord, generator
 
 sparse: Any = load("scipy.sparse", suppress_warning=True)  # imported late: these take a fifth of a second to load
-csgraph: Any = load("scipy.sparse.csgraph", suppress_warning=True)
 spatial: Any = load("scipy.spatial", suppress_warning=True)
 
 REACH = 30.0
@@ -37,7 +36,7 @@ def group_sizes(places: NDArray[np.float64], reach: float = REACH) -> NDArray[np
     count = len(places)
     pairs = spatial.KDTree(places).query_pairs(reach, output_type="ndarray")
     links = sparse.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-    member = csgraph.connected_components(links, directed=False)[1]
+    member = sparse.csgraph.connected_components(links, directed=False)[1]
     return np.bincount(member)[member]
 
 
