@@ -10,7 +10,7 @@ import typer
 
 from hedon.cli.cluster import ClusterOptions, own_words
 from hedon.cli.console import make_console
-from hedon.cli.make import make_worlds, require_finished
+from hedon.cli.make import make_worlds, require_finished, tell_few_seeds
 from hedon.cli.run import Checkpoint, Threads
 from hedon.experiment.argument import MAX_STEPS, parse_seeds
 from hedon.record.folder import CHECKPOINT_SECONDS
@@ -61,6 +61,7 @@ class WorldOptions(ClusterOptions, _Worlds):
         console, folder = make_console(), self.out or assay_folder(kind, demands[0])
         if self.ray is not None or self.slurm:
             folder = folder.absolute()  # other machines have another current folder
+        tell_few_seeds(min(len(demand.steps) for demand in demands), compared=False)
         if self.slurm:
             words = [*own_words("--jobs", "--hours", "--out"), "--out", str(folder)]
             path = self.write_script(Path(f"{folder.name}.sh"), kind, words, worlds_of(demands), self.threads or 1)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from hedon.record.folder import CHECKPOINT_SECONDS
+from hedon.statistic.minimum import few_seeds_note
 from hedon.text import count, printable
 
 if TYPE_CHECKING:
@@ -99,6 +100,18 @@ def tell_left_out(faults: Sequence[str]) -> None:
     """Reports which runs are not used and why, before others are made in their place."""
     for fault in faults:
         typer.echo(f"hedon: note: left out: {fault}", err=True)
+
+
+def tell_few_seeds(seeds: int, *, compared: bool, of: str = "") -> None:
+    """Reports what so few seeds cannot show, before hours are spent on them; silent if there are enough.
+
+    Args:
+        seeds: Number of seeds of each condition.
+        compared: Whether conditions are compared.
+        of: The part of the experiment that has so few seeds; empty for all of it.
+    """
+    if note := few_seeds_note(seeds, compared=compared):
+        typer.echo(f"hedon: note: {of and f'{of}: '}{note}", err=True)
 
 
 def require_finished(

@@ -7,7 +7,7 @@ import typer
 
 from hedon.cli.cluster import ClusterOptions
 from hedon.cli.console import make_console
-from hedon.cli.make import make_worlds, require_finished, require_folder, tell_left_out
+from hedon.cli.make import make_worlds, require_finished, require_folder, tell_few_seeds, tell_left_out
 from hedon.cli.option import with_options
 from hedon.cli.run import Threads
 from hedon.error import HedonError
@@ -93,6 +93,8 @@ def plan(
     from hedon.study.cost import request_cost
 
     _, request = _request(names, seeds, steps, fidelity, quick=quick)
+    if not quick:
+        _tell_few_seeds(request)
     with StepDisplay("planning") as tell:
         tell(0, 1, "measuring the speed of this machine takes some seconds")
         cost = request_cost(request, runs, threads)
@@ -129,6 +131,8 @@ def run(
       hedon study run fear --runs /shared/runs --slurm --jobs 100
     """
     studies, request = _request(names, seeds, steps, fidelity, quick=quick)
+    if not quick:
+        _tell_few_seeds(request)
     if options.slurm:
         _script(studies, request, names, threads or 1, runs, options)
     else:
@@ -174,6 +178,15 @@ def _request(
     items = tuple(item for study in studies for item in study.items)
     own = QUICK if quick else (parse_seeds(seeds, "--seeds") if seeds is not None else None, steps)
     return studies, Request(items, fidelity, *own)
+
+
+def _tell_few_seeds(request: "Request") -> None:
+    """Reports what the item with the fewest seeds cannot show."""
+    items = [item for item in request.items if item.conditions and not item.pictures]
+    if items:
+        fewest = min(items, key=lambda item: len(request.scale(item).seeds))
+        of = fewest.name if len(items) > 1 else ""
+        tell_few_seeds(len(request.scale(fewest).seeds), compared=True, of=of)
 
 
 def _script(

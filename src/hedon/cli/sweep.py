@@ -8,7 +8,7 @@ import typer
 
 from hedon.cli.cluster import ClusterOptions
 from hedon.cli.console import make_console
-from hedon.cli.make import make_runs, require_finished
+from hedon.cli.make import make_runs, require_finished, tell_few_seeds
 from hedon.cli.option import with_options
 from hedon.cli.run import Checkpoint
 from hedon.record.folder import CHECKPOINT_SECONDS
@@ -55,6 +55,7 @@ def plan(file: File, skip_invalid: SkipInvalid = False) -> None:
     made = asked.plan
     _say_left_out(asked, console)
     _say_size(made, console)
+    _tell_few_seeds(made)
     for name in made.factors:
         values = list(dict.fromkeys(format_value(each.settings[name]) for each in made.conditions))
         shown = ", ".join(values[:8]) + (f", … {values[-1]}" if len(values) > 8 else "")
@@ -208,6 +209,12 @@ def _say_size(made: "SweepPlan", console: "Console") -> None:
     )
 
 
+def _tell_few_seeds(made: "SweepPlan") -> None:
+    """Reports what a sweep cannot show. Values drawn from ranges need no repetition: neighbors are grouped."""
+    if not made.ranged:
+        tell_few_seeds(len(made.seeds), compared=len(made.conditions) > 1)
+
+
 def _say_left_out(asked: "SweepFile", console: "Console") -> None:
     for reason in asked.left_out:
         console.print(f"  left out: {printable(reason)}", soft_wrap=True)
@@ -215,6 +222,8 @@ def _say_left_out(asked: "SweepFile", console: "Console") -> None:
 
 def _run_or_script(made: "SweepPlan", store: "Store", workers: int, checkpoint: float, options: ClusterOptions) -> None:
     """Runs a sweep, or writes a script that does. Its folder must be a URL or shared by all nodes."""
+    _say_size(made, make_console())
+    _tell_few_seeds(made)
     if not options.slurm:
         _run_and_report(made, store, workers, options.ray, options.part, checkpoint)
         return
@@ -239,7 +248,6 @@ def _run_and_report(
     from hedon.measure.world_measure import titles_of
 
     console, share, again = make_console(), parse_part(part), f"Go on with: hedon sweep resume {_quoted(store)}"
-    _say_size(made, console)
     while True:
         with batch_jobs(made, store, checkpoint, share, on_cluster=ray is not None) as jobs:
             console.print(f"  {count(len(jobs), 'batch')} to make in {store.location}", soft_wrap=True)

@@ -22,11 +22,9 @@ from hedon.report.answer import Answer, simple_answer
 from hedon.statistic.contrast import Contrast, independent_contrast, paired_contrast
 from hedon.statistic.correction import holm
 from hedon.statistic.extinction import log_rank
-from hedon.statistic.minimum import FOR_INTERVAL
+from hedon.statistic.minimum import FOR_INTERVAL, FOR_PAIRS
 from hedon.text import count, p_phrase
 
-SIGNIFICANT_PAIRS = 6
-"""Smallest number of pairs for which a sign-flip test can have a p value below 0.05: 2 / 2⁶ is 0.03."""
 MOST_LISTED = 8
 """Largest number of a factor's values in a message."""
 
@@ -232,8 +230,8 @@ def _contrasts(
         f"test; p Holm: {_family(len(found))}. Worlds that died out count if they have a value."
     )
     most = max((len(each.matched.values) for each in found if each.matched.paired), default=0)
-    if 0 < most < SIGNIFICANT_PAIRS:
-        note += f" With {count(most, 'pair')}, no p is below {2 / 2**most:.2g}: take at least {SIGNIFICANT_PAIRS}."
+    if 0 < most < FOR_PAIRS:
+        note += f" With {count(most, 'pair')}, no p is below {2 / 2**most:.2g}: take at least {FOR_PAIRS}."
     note += f" The conditions differ in {', '.join(others)} too: the design does not cross them." if others else ""
     return make_table("contrast", f"{names[1]} against {names[0]}", rows, " ".join([note, *cautions]))
 
