@@ -29,7 +29,7 @@ app = typer.Typer(
 
 SHARES = "0.05,0.25,0.5,0.75,0.95"
 First = Annotated[str, typer.Argument(metavar="A", help=f"Genomes: {SOURCES}.")]
-Second = Annotated[str, typer.Argument(metavar="B", help="Genomes likewise.")]
+Second = Annotated[str, typer.Argument(metavar="B", help="Genomes, given as for A.")]
 
 
 @app.command()
@@ -37,7 +37,7 @@ Second = Annotated[str, typer.Argument(metavar="B", help="Genomes likewise.")]
 def landscape(
     source: Source,
     spread: Annotated[
-        str, typer.Option("--range", metavar="LOW:HIGH", help="Founders' genes lie evenly between these.")
+        str, typer.Option("--range", metavar="LOW:HIGH", help="Founders' genes are spread evenly between these.")
     ] = "-8:8",
     sd: Annotated[float | None, typer.Option(help="Founders' genes are normal with this sd instead.", min=0.0)] = None,
     genes: Annotated[
@@ -108,8 +108,8 @@ def compete(a: First, b: Second, *, options: ContestOptions) -> None:
 @with_options(ContestOptions)
 def invade(
     resident: Annotated[str, typer.Argument(metavar="RESIDENT", help=f"Genomes: {SOURCES}.")],
-    mutant: Annotated[str, typer.Argument(metavar="MUTANT", help="Genomes likewise.")],
-    share: Annotated[float, typer.Option(help="Of the mutant among the founders.", min=0.001, max=0.999)] = 0.1,
+    mutant: Annotated[str, typer.Argument(metavar="MUTANT", help="Genomes, given as for RESIDENT.")],
+    share: Annotated[float, typer.Option(help="Share of the mutant among the founders.", min=0.001, max=0.999)] = 0.1,
     *,
     options: ContestOptions,
 ) -> None:
@@ -163,7 +163,7 @@ def frequency(
     a: First,
     b: Second,
     shares: Annotated[
-        str, typer.Option(metavar="SHARE,…", help="Of A among the founders, one run for each; two or more.")
+        str, typer.Option(metavar="SHARE,…", help="Shares of A among the founders, at least two; one run for each.")
     ] = SHARES,
     *,
     options: ContestOptions,
@@ -171,8 +171,8 @@ def frequency(
     """Fitness against frequency: is the rarer of two groups the fitter one?
 
     Like compete, but from several shares of A. Prints A's selection coefficient per generation at each share, its slope
-    over the share, and the share at which neither grows, all with intervals over seeds. If each group grows where it is
-    rare, the two can live together. After Ctrl-C, the same command continues; further shares are added to the existing
+    over the share, and the share at which neither grows, all with intervals over seeds. If each group grows when it is
+    rare, the two can coexist. After Ctrl-C, the same command continues; further shares are added to the existing
     ones if the first is the same or --out is given.
 
     \b
@@ -196,7 +196,7 @@ def frequency(
 @with_options(StabilityOptions)
 def stability(
     source: Source,
-    at: Annotated[str, typer.Option("--at", metavar="GENE=VALUE,…", help="Where founders begin: food=5,action=5.")],
+    at: Annotated[str, typer.Option("--at", metavar="GENE=VALUE,…", help="Where founders start: food=5,action=5.")],
     beside: Annotated[
         str | None, typer.Option(metavar="GENE=VALUE,…", help="Another start to compare with: food=0,action=0.")
     ] = None,
@@ -232,10 +232,11 @@ def contingency(
         list[str], typer.Argument(metavar="RUN[@STEP]", help="Runs, each at its end or at one of its checkpoints.")
     ],
     of: Annotated[
-        str | None, typer.Option(metavar="SEEDS", help="The worlds that have futures; by default all of the runs.")
+        str | None,
+        typer.Option(metavar="SEEDS", help="Seeds of the worlds that get futures; by default all worlds of the runs."),
     ] = None,
     fresh: Annotated[
-        str | None, typer.Option(metavar="SEEDS", help="Fresh worlds to compare with; by default those of --seeds.")
+        str | None, typer.Option(metavar="SEEDS", help="Seeds of fresh worlds to compare with; by default --seeds.")
     ] = None,
     *,
     options: ContingencyOptions,

@@ -124,7 +124,7 @@ class _Place:
     condition: Annotated[
         str | None,
         typer.Option(
-            "--in", metavar="PRESET|FILE", help="The world; by default that of the first run named, or baseline."
+            "--in", metavar="PRESET|FILE", help="The world; by default that of the first run given, or baseline."
         ),
     ] = None
     species: Species = None

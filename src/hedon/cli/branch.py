@@ -24,7 +24,10 @@ def branch(
         str | None, typer.Option(help="Replay the tape: one future of a world per seed, as in 1-30.")
     ] = None,
     of: Annotated[
-        int | None, typer.Option(metavar="SEED", help="With --seeds: which world of the old run, if it has several.")
+        int | None,
+        typer.Option(
+            metavar="SEED", help="With --seeds: the seed of the world that gets futures, if the old run has several."
+        ),
     ] = None,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Change one setting; repeatable.")

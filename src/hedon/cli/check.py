@@ -20,14 +20,15 @@ def check(
     against: Annotated[
         Path | None,
         typer.Option(
-            metavar="RUN", help="Say instead why another run differs: settings, versions, and where worlds part."
+            metavar="RUN",
+            help="Instead show why another run differs: settings, versions, and the step at which worlds part.",
         ),
     ] = None,
     fault: Annotated[
         bool,
         typer.Option(
             "--fault",
-            help="Compute again instead from the last checkpoint before the run's fault: does it happen again?",
+            help="Instead compute again from the last checkpoint before the run's fault: does it happen again?",
         ),
     ] = False,
     threads: Threads = 0,

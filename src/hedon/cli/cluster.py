@@ -13,7 +13,7 @@ from hedon.error import HedonError
 Ray = Annotated[
     str | None, typer.Option(metavar="ADDRESS|local", help="Run on this Ray cluster, or on one started here.")
 ]
-Part = Annotated[str | None, typer.Option(metavar="I/N", help="Only every N-th part of the work, from the I-th on.")]
+Part = Annotated[str | None, typer.Option(metavar="I/N", help="Do only part I of N of the work, as in 2/10.")]
 
 
 class ClusterError(HedonError):
@@ -27,9 +27,11 @@ class ClusterOptions:
     ray: Ray = None
     part: Part = None
     slurm: Annotated[
-        bool, typer.Option("--slurm", help="Run nothing, but write a job array for Slurm that does: NAME.sh.")
+        bool, typer.Option("--slurm", help="Instead of running anything, write a Slurm job array that does: NAME.sh.")
     ] = False
-    jobs: Annotated[int, typer.Option("--jobs", help="With --slurm: tasks of the array.", min=1, max=100_000)] = 16
+    jobs: Annotated[
+        int, typer.Option("--jobs", help="With --slurm: number of tasks in the array.", min=1, max=100_000)
+    ] = 16
     hours: Annotated[int, typer.Option(help="With --slurm: hours that a task may take.", min=1, max=10_000)] = 24
 
     def write_script(self, path: Path, name: str, words: Sequence[str], most: int, processors: int) -> Path:

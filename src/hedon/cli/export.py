@@ -22,10 +22,10 @@ TreeFormat = Literal["alife", "newick", "trees", "png"]
 
 Source = Annotated[Path, typer.Argument(metavar="RUN", help="Folder of the run; it is only read.")]
 Out = Annotated[Path | None, typer.Option(help="The new file; by default RUN-WHAT with the format's ending, here.")]
-Format = Annotated[TableFormat, typer.Option("--format", help="Of the file.")]
+Format = Annotated[TableFormat, typer.Option("--format", help="Format of the file.")]
 World = Annotated[
     int | None,
-    typer.Option(metavar="SEED", help="Whose pedigree, by the world's seed; needed where there are several."),
+    typer.Option(metavar="SEED", help="Seed of the world; needed if the run has several."),
 ]
 Species = Annotated[str | None, typer.Option(help="Only the pedigree of this species.")]
 
@@ -77,7 +77,7 @@ def phylogeny(
     world: World = None,
     species: Species = None,
     color: Annotated[
-        str | None, typer.Option(metavar="GENE", help="What colors the picture; by default the first gene.")
+        str | None, typer.Option(metavar="GENE", help="Gene that colors the picture; by default the first.")
     ] = None,
     out: Out = None,
 ) -> None:
@@ -122,7 +122,9 @@ def indices(
     file_format: Format = "csv",
     world: World = None,
     species: Species = None,
-    points: Annotated[int, typer.Option(help="How many times they are taken at.", min=1, max=10_000)] = POINTS,
+    points: Annotated[
+        int, typer.Option(help="Number of times at which they are computed.", min=1, max=10_000)
+    ] = POINTS,
     out: Out = None,
 ) -> None:
     """Indices of the pedigree's shape over time; needs the optional packages hedon[phylogeny].
@@ -144,11 +146,11 @@ def indices(
 def dataset(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN…", help="Folders of runs.")],
     out: Annotated[Path | None, typer.Option(help="The new folder; by default dataset.")] = None,
-    title: Annotated[str | None, typer.Option(help="Of the card; by default the runs' names.")] = None,
+    title: Annotated[str | None, typer.Option(help="Title of the card; by default the runs' names.")] = None,
     license_name: Annotated[
-        str, typer.Option("--license", metavar="SPDX", help="Of the dataset, such as cc0-1.0.")
+        str, typer.Option("--license", metavar="SPDX", help="License of the dataset, such as cc0-1.0.")
     ] = "cc-by-4.0",
-    frames: Annotated[bool, typer.Option("--frames", help="With the positions of all bodies.")] = False,
+    frames: Annotated[bool, typer.Option("--frames", help="Include the positions of all bodies.")] = False,
 ) -> None:
     """Runs as a dataset to publish: Parquet tables, configs, a card with every column, and checksums.
 
@@ -176,7 +178,7 @@ def video(
     world: Annotated[
         int | None, typer.Option(metavar="SEED", help="Which world, by its seed; by default the first.")
     ] = None,
-    width: Annotated[int, typer.Option(help="Of a picture [pixel].", min=160, max=3840)] = 960,
+    width: Annotated[int, typer.Option(help="Width of the picture [pixel].", min=160, max=3840)] = 960,
     rate: Annotated[int, typer.Option(help="Pictures per second.", min=1, max=60)] = 25,
 ) -> None:
     """A video of a run.

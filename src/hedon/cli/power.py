@@ -18,13 +18,16 @@ class PowerError(HedonError):
 def power(
     source: Annotated[
         str | None,
-        typer.Argument(metavar="PILOT", help="Worlds to learn from: runs, a sweep, an assay, a study, or a table."),
+        typer.Argument(
+            metavar="PILOT", help="Worlds that show the variation: runs, a sweep, an assay, a study, or a table."
+        ),
     ] = None,
     other: Annotated[
         str | None, typer.Argument(metavar="OTHER", help="A second condition, in pairs with the first by seed.")
     ] = None,
     effect: Annotated[
-        str | None, typer.Option(metavar="SIZE,…", help="Effects to see, in units of the measure, as in -0.02,-0.01.")
+        str | None,
+        typer.Option(metavar="SIZE,…", help="Effects to detect, in units of the measure, as in -0.02,-0.01."),
     ] = None,
     only: Only = None,
     by: Annotated[
@@ -34,8 +37,10 @@ def power(
     sd: Annotated[
         float | None, typer.Option(help="Instead of a pilot: the standard deviation between worlds, or of pairs.")
     ] = None,
-    chance: Annotated[float, typer.Option("--power", help="Chance to see the effect.", min=0.06, max=0.999)] = 0.8,
-    level: Annotated[float, typer.Option(help="Of the test.", min=0.0001, max=0.5)] = 0.05,
+    chance: Annotated[
+        float, typer.Option("--power", help="Probability of detecting the effect.", min=0.06, max=0.999)
+    ] = 0.8,
+    level: Annotated[float, typer.Option(help="Significance level of the test.", min=0.0001, max=0.5)] = 0.05,
     out: Annotated[Path | None, typer.Option(help="Folder of the answer; by default none is written.")] = None,
 ) -> None:
     """Compute how many worlds are needed to detect an effect, from the variation among the worlds of a pilot.

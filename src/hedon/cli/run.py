@@ -55,11 +55,13 @@ def run(
     ] = None,
     networks: Annotated[
         str | None,
-        typer.Option(metavar="RUN|FILE", help='What species of learning.policy = "fixed" act by: networks of a run.'),
+        typer.Option(metavar="RUN|FILE", help='Networks for species with learning.policy = "fixed": those of a run.'),
     ] = None,
     backend: Annotated[
         str | None,
-        typer.Option(help=f"What computes: {', '.join(_BACKENDS)}; by default the fastest instruction set."),
+        typer.Option(
+            help=f"Instruction set or device: {', '.join(_BACKENDS)}; by default the fastest instruction set."
+        ),
     ] = None,
     report: Report = True,
 ) -> None:
@@ -76,9 +78,9 @@ def run(
       hedon run my.toml --set food.normal.growth_rate=0.5 --frames 64
       hedon run baseline --founders runs/a@1000000:0.5,runs/b@1000000:0.5
 
-    The environment variable HEDON_BACKEND does for every command what --backend does for this one. hedon resume
-    continues on the run's device if it can be used, and otherwise on the processor, with the same bits.
-    HEDON_SCRATCH names a folder for data that only learners need, for worlds larger than memory.
+    The environment variable HEDON_BACKEND sets the backend for every command. hedon resume continues on the run's
+    device if it can be used, and otherwise on the processor, with the same bits. HEDON_SCRATCH names a folder for
+    data that only learners need, for worlds larger than memory.
     """
     from hedon.config.load import load_config
     from hedon.experiment.network import networks_from

@@ -45,9 +45,7 @@ Steps = Annotated[
     typer.Option(help="Steps of each world; by default, and for pictures, the item's own.", min=1, max=MAX_STEPS),
 ]
 FidelityName = Annotated[str, typer.Option("--fidelity", help="corrected, released or as_printed.")]
-Quick = Annotated[
-    bool, typer.Option("--quick", help="One seed and 2,048 steps, to see that everything works; it tells nothing.")
-]
+Quick = Annotated[bool, typer.Option("--quick", help="One seed and 2,048 steps, only to check that everything works.")]
 Runs = Annotated[Path, typer.Option(help="Folder of the runs: existing runs are used, missing ones are added.")]
 Out = Annotated[
     Path | None, typer.Option(help="Folder of the page, the figures and the tables; by default studies/NAME.")

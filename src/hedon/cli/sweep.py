@@ -25,17 +25,17 @@ PRINTED = 40
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
-    help="Run many settings and seeds, and collect one table of what came out. docs/guide/sweep.md explains it.",
+    help="Run many settings and seeds, and collect the results in one table. docs/guide/sweep.md explains it.",
 )
 
 File = Annotated[Path, typer.Argument(metavar="SWEEP.toml", help="The file of a sweep.")]
-Place = Annotated[str, typer.Argument(metavar="FOLDER", help="Where the sweep lives: a folder, or a URL (s3://…).")]
+Place = Annotated[str, typer.Argument(metavar="FOLDER", help="Folder or URL (s3://…) of the sweep.")]
 Out = Annotated[
     str | None,
-    typer.Option(metavar="FOLDER|URL", help="Where the sweep lives; by default sweeps/ and the file's name."),
+    typer.Option(metavar="FOLDER|URL", help="Folder or URL of the sweep; by default sweeps/ and the file's name."),
 ]
 SkipInvalid = Annotated[
-    bool, typer.Option("--skip-invalid", help="List the settings that cannot be and leave them out.")
+    bool, typer.Option("--skip-invalid", help="List invalid combinations of settings, and leave them out.")
 ]
 Workers = Annotated[int, typer.Option(help="Processes at a time; 0 for all processors. Changes no result.", min=0)]
 

@@ -29,7 +29,7 @@ def view(
     ] = None,
     live: Annotated[bool, typer.Option("--live", help="Simulate in the browser: a preset, or a file (.toml).")] = False,
     article: Annotated[
-        bool, typer.Option("--story", help="The article to play with: where do rewards come from?")
+        bool, typer.Option("--story", help="The interactive article: where do rewards come from?")
     ] = False,
     step: Annotated[int | None, typer.Option(help="Open a recorded run at this step.", min=0)] = None,
     seed: Annotated[int | None, typer.Option(help="Show the world of this seed of the run.", min=0)] = None,
@@ -38,7 +38,7 @@ def view(
         Path | None,
         typer.Option(
             metavar="DIR|FILE.html",
-            help="Write a site for any web server instead of opening the page; with --story alone, also one file.",
+            help="Write a site for any web server instead of opening the page; with only --story, also one file.",
         ),
     ] = None,
     port: Annotated[
