@@ -245,7 +245,7 @@ CALIBRATIONS = [
         LEVEL,
         _skewed_mean,
         tolerance=0.12,
-        note="If some of a few worlds died out, the interval is too narrow: with five worlds it misses the mean in 24 "
-        "% of cases, with ten in 11 %, with twenty in 7 %. Read the number of worlds that died out beside it.",
+        note="If there are few worlds and some of them died out, the interval is too narrow: it misses the mean in "
+        "24 % of cases with five worlds, in 11 % with ten and in 7 % with twenty. Check how many worlds died out.",
     ),
 ]
