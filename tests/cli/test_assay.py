@@ -317,7 +317,7 @@ def test_comparisons_say_which_worlds_share_a_past(folder: Path, past: Path) -> 
         ),
         (("landscape", "baseline", "--genes", "food"), "must be two different genes"),
         (("landscape", "baseline", "--range", "-20:3"), "must be LOW:HIGH around 0, within -10:10"),
-        (("landscape", "baseline", "--sd", "-1"), "Invalid value for '--sd'"),
+        (("landscape", "baseline", "--sd", "-1"), "--sd -1: must be a number of at least 0"),
         (("landscape", "baseline", "--ends", "nowhere"), "--ends nowhere: cannot be read"),
         (("landscape", "baseline", "--out", "whole"), "holds a run with other settings, founders or seeds"),
         (("frequency", "food=1", "food=2", "--shares", "0.5"), "must be two or more different shares between 0 and 1"),

@@ -36,6 +36,24 @@ def test_a_mistake_is_named(tmp_path, words, message):
     assert sorted(tmp_path.iterdir()) == before, "nothing is written"
 
 
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("run", "--steps", "10k"), "--steps 10k: must be an integer from 1 to 2,147,483,647, such as 10000 or 10_000"),
+        (("run", "--steps", "0"), "--steps 0: must be an integer from 1 to 2,147,483,647"),
+        (("branch", "here", "--at", "1e4"), "--at 1e4: must be an integer, such as 10000 or 10_000"),
+        (("view", "--agent", "-1"), "--agent -1: must be an integer of at least 0"),
+        (("run", "--checkpoint", "often"), "--checkpoint often: must be a number of at least 0"),
+        (("power", "--sd", "x"), "--sd x: must be a number"),
+        (("power", "--power", "3"), "--power 3: must be a number from 0.06 to 0.999"),
+        (("export", "agents", "here", "--format", "pdf"), "--format: 'pdf' is not one of 'csv', 'parquet', 'arrow'"),
+    ],
+)
+def test_a_refused_value_gives_what_is_allowed(words, message):
+    answer = hedon(*words)
+    assert (answer.returncode, answer.stderr) == (2, f"hedon: {message}\n")
+
+
 def test_what_a_session_draws_on_does_not_matter(tmp_path):
     command = ["hedon", "run", "baseline", "--steps", "64", "--out", str(tmp_path / "run")]
     answer = subprocess.run(

@@ -17,6 +17,7 @@ from hedon.cli.branch import branch
 from hedon.cli.check import check
 from hedon.cli.compare import compare
 from hedon.cli.forecast import forecast
+from hedon.cli.option import refused_value
 from hedon.cli.output import OutputError, give_up, guard, pipe_closed
 from hedon.cli.power import power
 from hedon.cli.report import report
@@ -82,7 +83,16 @@ GROUPS = {
 
 
 class Grouped(TyperGroup):
-    """Commands whose help lists them by group."""
+    """Commands whose help lists them by group, and whose options explain a value that they refuse."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Runs the command; a value that cannot be used ends it with one message."""
+        try:
+            return super().invoke(ctx)
+        except typer.BadParameter as error:
+            if not (message := refused_value(error)):
+                raise
+            fail(message)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Writes the list of commands."""
