@@ -63,6 +63,19 @@ def test_several_worlds_share_a_line_of_progress():
     assert second == "  seed 2: extinct at step 700"
 
 
+def test_a_world_without_a_new_window_is_not_printed_again():
+    stream = io.StringIO()
+    display = RunDisplay(Console(file=stream), Columns(("normal",), 0), (1, 2))
+    other = ROW | {"step": 2 * WINDOW, "alive": 4}
+    for seconds, step, rows in ((5.0, 1500, (ROW, ROW)), (15.0, 1900, (ROW, ROW)), (25.0, 2000, (other, other))):
+        display.update(Moment(0, step, 100 * WINDOW, seconds, rows, (None, 700), WINDOW))
+    lines = stream.getvalue().splitlines()
+    heads = [line for line in lines if line.startswith("step ")]
+    assert [line.partition(" of")[0] for line in heads] == ["step 1,500", "step 1,900", "step 2,000"]
+    worlds = [line.partition(",")[0] for line in lines if line.startswith("  seed")]
+    assert worlds == ["  seed 1 at step 1", "  seed 2: extinct at step 700", "  seed 1: 4 alive"]
+
+
 def test_a_species_that_is_gone_has_no_energy():
     """The world lives on: its other species has a line of its own."""
     nan = float("nan")

@@ -91,6 +91,7 @@ class RunDisplay(Screen):
         self._weights = columns.shown_names
         self._labels = _labels(columns, seeds)
         self._speed = _Speed()
+        self._printed: list[tuple[int | None, int | None] | None] = [None] * len(self._labels)
 
     def update(self, moment: Moment) -> None:
         """Shows the moment, if enough time has passed or the run is at its end."""
@@ -100,13 +101,21 @@ class RunDisplay(Screen):
             self.show(lambda: self._lines(moment, speed), lambda: self._draw(moment, speed))
 
     def _lines(self, moment: Moment, speed: float | None) -> str:
-        """The run's progress and its only world in one line, or a line for each of several worlds below it."""
+        """The run's progress and its only world in one line, or a line below it for each of several that changed."""
         worlds = [
             f"  seed {label}{_when(row, end, moment)}: {_describe(row, end, self._weights)}"
             for label, row, end in zip(self._labels, moment.rows, moment.extinct, strict=True)
         ]
         head = _head(moment, speed, "  ")
-        return head + worlds[0] if len(worlds) == 1 else "\n".join([head, *worlds])
+        if len(worlds) == 1:
+            return head + worlds[0]
+        # An extinct world does not change any more, whatever the step of its row.
+        states = [
+            (row["step"] if end is None else None, end) for row, end in zip(moment.rows, moment.extinct, strict=True)
+        ]
+        changed = [world for world, old, new in zip(worlds, self._printed, states, strict=True) if old != new]
+        self._printed[:] = states
+        return "\n".join([head, *changed])
 
     def _draw(self, moment: Moment, speed: float | None) -> Group:
         head = Text(_head(moment, speed, "   "))
