@@ -72,11 +72,8 @@ const char* fill_kernel(Kernel* kernel) {
   return "";
 }
 
-const char* describe() {
-  static const std::string text =
-      std::string("{\"name\": \"emulation on the processor\", \"variant\": \"") + VARIANT.name + "\"}";
-  return text.c_str();
-}
+const std::string DESCRIPTION =
+    std::string("{\"name\": \"emulation on the processor\", \"variant\": \"") + VARIANT.name + "\"}";
 
 const DeviceProgram PROGRAM = {
     "cuda-emulated",
@@ -85,7 +82,7 @@ const DeviceProgram PROGRAM = {
     [] { return ""; },
     [] { return DEVICES; },
     [](int32_t device) { used = device; },
-    describe,
+    [] { return DESCRIPTION.c_str(); },
     [] { return LEARNERS_AT_ONCE; },
     reserve,
     free,

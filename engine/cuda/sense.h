@@ -3,6 +3,7 @@
 
 #include "cuda/block.h"
 #include "cuda/lanes.h"
+#include "cuda/variant.h"
 #include "kernel/cast_rays.h"
 #include "kernel/cull_circles.h"
 #include "kernel/network_forward.h"
@@ -91,6 +92,17 @@ HEDON_FN void output_of(const Block& block, const World& world, int32_t slot, co
   }
 }
 
+/// Begins to load the weights with which the agent in `slot` will act, on one thread.
+HEDON_FN void fetch_weights(const World& world, int32_t slot) {
+  const NetworkShape& shape = world.species(slot).network;
+  const ActingNetwork network = world.network(slot);
+  const int32_t wide = sizeof(float);
+  if (network.packed_weights == nullptr)
+    fetch_ahead(network.params, shape.size() * wide);
+  else
+    fetch_ahead(network.packed_weights, shape.pairs() * wide);
+}
+
 /// All agents observe and act. `step` takes this one, which fits a block, instead of the one in `world/act.h`.
 HEDON_FN void sense_and_act(Block& block, World& world, int64_t t) {
   block.for_each_by_tile(world.head().living_count, [&](int32_t i) {
@@ -98,7 +110,12 @@ HEDON_FN void sense_and_act(Block& block, World& world, int64_t t) {
     const Species& species = world.species(slot);
     const int64_t row = world.kept(slot, t);
     PackedObservation& seen = world.observation(slot, row);
-    block.once_by_tile([&] { note_start(world, slot); });
+    block.once_by_tile([&] {
+      if constexpr (VARIANT.fetch) {
+        if (species.has_network) fetch_weights(world, slot);
+      }
+      note_start(world, slot);
+    });
     if (species.observes) observe_by_tile(block, world, slot, seen);
     float output[OUTPUTS];
     if (species.has_network) output_of(block, world, slot, seen, output);

@@ -45,6 +45,11 @@ HEDON_INLINE float* shared_memory() {
   return reinterpret_cast<float*>(memory);
 }
 
+/// Begins to load global memory into L2, without waiting for it. Address and size are multiples of 16 bytes.
+HEDON_INLINE void fetch_ahead(const float* from, int32_t bytes) {
+  asm volatile("cp.async.bulk.prefetch.L2.global [%0], %1;" ::"l"(from), "r"(bytes));
+}
+
 #elif defined(__CUDACC__)
 
 // nvcc compiles every function for the host too, where kernels never run.
@@ -61,6 +66,7 @@ HEDON_INLINE int32_t thread_exchange(int32_t& place, int32_t value) {
   return before;
 }
 HEDON_INLINE float* shared_memory() { return nullptr; }
+HEDON_INLINE void fetch_ahead(const float*, int32_t) {}
 
 #else
 
@@ -75,6 +81,7 @@ HEDON_INLINE int32_t thread_exchange(int32_t& place, int32_t value) {
   return __atomic_exchange_n(&place, value, __ATOMIC_RELAXED);
 }
 float* shared_memory();
+HEDON_INLINE void fetch_ahead(const float*, int32_t) {}
 
 #endif
 

@@ -16,17 +16,19 @@ struct Variant {
   int32_t together;   ///< blocks that a multiprocessor must have registers for, which limits a thread's; 0 for no limit
   int32_t learners;   ///< blocks of updates that a multiprocessor works on at the same time
   bool compact;       ///< an update keeps no gradient and no transposed copy of the square layer in shared memory
+  bool fetch;         ///< the weights of an agent are fetched while it observes
   bool overlap;       ///< groups of worlds, of which one steps while another one learns; not known to the kernels
 };
 
 /// The list that `--variants` reads: each name is a value of HEDON_VARIANT.
 namespace variant {
-inline constexpr Variant shared_moments{"shared_moments", 512, 2, 2, 0, 1, false, false};
-inline constexpr Variant global_moments{"global_moments", 512, 2, 0, 0, 1, false, false};
-inline constexpr Variant half_blocks{"half_blocks", 256, 4, 0, 2, 1, false, false};
-inline constexpr Variant overlap{"overlap", 256, 4, 0, 2, 1, false, true};
-inline constexpr Variant two_learners{"two_learners", 256, 4, 0, 2, 2, true, false};
-inline constexpr Variant overlap_two_learners{"overlap_two_learners", 256, 4, 0, 2, 2, true, true};
+inline constexpr Variant shared_moments{"shared_moments", 512, 2, 2, 0, 1, false, false, false};
+inline constexpr Variant fetched_weights{"fetched_weights", 512, 2, 2, 0, 1, false, true, false};
+inline constexpr Variant global_moments{"global_moments", 512, 2, 0, 0, 1, false, false, false};
+inline constexpr Variant half_blocks{"half_blocks", 256, 4, 0, 2, 1, false, false, false};
+inline constexpr Variant overlap{"overlap", 256, 4, 0, 2, 1, false, false, true};
+inline constexpr Variant two_learners{"two_learners", 256, 4, 0, 2, 2, true, false, false};
+inline constexpr Variant overlap_two_learners{"overlap_two_learners", 256, 4, 0, 2, 2, true, false, true};
 }  // namespace variant
 
 /// The variant of a build that names none: the fastest of those measured on a device.

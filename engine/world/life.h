@@ -116,24 +116,37 @@ HEDON_FN void count_meals(const World& world, int32_t slot) {
   for (int32_t m = 0; m < meals; ++m) sum[m] += world.meal(slot)[m];
 }
 
-/// Adds the energy that living agents gained and spent in this step to the ledger, in the living order.
-HEDON_FN void keep_ledger(World& world) {
-  const StepScratch& scratch = world.scratch;
+/// Counts what living agents did in this step, and adds the harm of obstacles to the ledger, in the living order.
+HEDON_FN void count_steps(World& world) {
   for (int32_t i = 0; i < world.head().living_count; ++i) {
     const int32_t slot = world.state.living[i];
-    Counters& counters = world.counters(slot);
-    counters.agent_steps += 1;
+    world.counters(slot).agent_steps += 1;
     if (world.state.eaten_by.count > 0) count_meals(world, slot);
-    counters.energy_eaten += scratch.energy_eaten[slot];
-    counters.energy_basic += scratch.energy_basic[slot];
-    counters.energy_action += scratch.energy_action[slot];
-    counters.energy_forgiven += scratch.energy_forgiven[slot];
-    counters.energy_capped += scratch.energy_capped[slot];
     if (world.shape->obstacles == 0) continue;
     ObstacleCounters& harm = world.state.obstacle_counters[world.shape->species_of(slot)];
-    harm.obstacles_touched += scratch.touched[slot];
-    harm.energy_damage += scratch.energy_damage[slot];
+    harm.obstacles_touched += world.scratch.touched[slot];
+    harm.energy_damage += world.scratch.energy_damage[slot];
   }
+}
+
+/// Adds the energy that living agents gained and spent in this step to the ledger: one thread for each sum, in the
+/// living order. The threads differ only in their addresses, since those of a warp take different branches in turn.
+template <class Crew>
+HEDON_FN void keep_ledger(const Crew& crew, World& world) {
+  const StepScratch& scratch = world.scratch;
+  crew.each(0, 5, [&](int32_t sum) {
+    const auto pick = [sum](const auto& a, const auto& b, const auto& c, const auto& d, const auto& e) {
+      return sum == 0 ? a : sum == 1 ? b : sum == 2 ? c : sum == 3 ? d : e;
+    };
+    const double* const energy = pick(scratch.energy_eaten.data, scratch.energy_basic.data, scratch.energy_action.data,
+                                      scratch.energy_forgiven.data, scratch.energy_capped.data);
+    double Counters::* const total = pick(&Counters::energy_eaten, &Counters::energy_basic, &Counters::energy_action,
+                                          &Counters::energy_forgiven, &Counters::energy_capped);
+    for (int32_t i = 0; i < world.head().living_count; ++i) {
+      const int32_t slot = world.state.living[i];
+      world.counters(slot).*total += energy[slot];
+    }
+  });
 }
 
 /// Looks for a free position for the child of `parent` around it.

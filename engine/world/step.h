@@ -102,18 +102,23 @@ HEDON_FN void step(Group& group, World& world, int64_t t, Lap&& lap) {
     group.once([&] { hunt(world); });
     group.for_each(head.living_count, [&](int32_t i) { reward_and_fates(scratch.by_slot[i]); });
   }
-  group.once([&] {
-    apply_rules(world);
-    keep_ledger(world);
-    if (world.shape->hunting) apply_deaths(world, scratch.eaten);
-    if (world.config->world.birth_order == WorldBirthOrder::before_deaths) breed(world);
-    apply_deaths(world, scratch.dies);
-    if (world.config->world.birth_order == WorldBirthOrder::after_deaths) breed(world);
-    grow(world);
-    head.step += 1;
-    if (head.step > UINT32_MAX) world.fail(Status::id_overflow, -1, static_cast<double>(head.step));
+  group.together([&](const auto& crew) {
+    crew.once([&] {
+      apply_rules(world);
+      count_steps(world);
+    });
+    keep_ledger(crew, world);
+    crew.once([&] {
+      if (world.shape->hunting) apply_deaths(world, scratch.eaten);
+      if (world.config->world.birth_order == WorldBirthOrder::before_deaths) breed(world);
+      apply_deaths(world, scratch.dies);
+      if (world.config->world.birth_order == WorldBirthOrder::after_deaths) breed(world);
+      grow(world);
+      head.step += 1;
+      if (head.step > UINT32_MAX) world.fail(Status::id_overflow, -1, static_cast<double>(head.step));
+    });
+    prepare_step(crew, world);
   });
-  group.together([&](const auto& crew) { prepare_step(crew, world); });
   lap(Part::life);
 }
 
