@@ -61,7 +61,7 @@ def test_the_arm_in_which_the_large_reward_wins():
         in shown
     )
     own, corrected = p_text(alone[0]), p_text(holm(alone)[0])
-    assert f"(24 worlds, p {own} by t, {corrected} by Holm)" in page("README.md")
+    assert f"(24 worlds; t test, p {own}, Holm-corrected {corrected})" in " ".join(page("README.md").split())
     mean, bounds = span(rate, sign=False).split(" ", 1)
     told = f"{mean} above one half {bounds[:-1].replace(' …', ' to')}, p {own}, by Holm over the four {corrected})"
     article = page("../paper/paper.md").replace("\n", " ")
@@ -88,6 +88,8 @@ def test_the_contest_of_64_worlds_of_a_device():
     end = f"the share at the end {span(values)} above one half, in {(values > 0).sum()} of 64 worlds"
     told = f"s is {text(s, 3)} {bounds}, {end}; p {small(p_of(values))} by t"
     assert told in page("start.md").replace("\n", " ")
-    assert f"again in 64 new worlds (s {text(s, 3)} {bounds}, p {small(p_of(values))})" in page("README.md")
+    shown = " ".join(page("README.md").split())
+    assert "[in 64 new worlds](start.md#again-with-64-worlds-made-by-a-device)" in shown
+    assert f"(s {text(s, 3)} {bounds}, p {small(p_of(values))})" in shown
     told = f"in 64 new worlds it is {span(values)[:-1].replace(' …', ' to')}, p {small(p_of(values))})"
     assert told in page("../paper/paper.md").replace("\n", " ")
