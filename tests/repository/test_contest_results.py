@@ -63,9 +63,9 @@ def test_the_arm_in_which_the_large_reward_wins():
     own, corrected = p_text(alone[0]), p_text(holm(alone)[0])
     assert f"(24 worlds; t test, p {own}, Holm-corrected {corrected})" in " ".join(page("README.md").split())
     mean, bounds = span(rate, sign=False).split(" ", 1)
-    told = f"{mean} above one half {bounds[:-1].replace(' …', ' to')}, p {own}, by Holm over the four {corrected})"
+    told = f"{mean} above one half {bounds[:-1].replace(' …', ' to')}, p {own}, {corrected} with Holm's correction"
     article = page("../paper/paper.md").replace("\n", " ")
-    assert told in article
+    assert f"{told} over the four)" in article
     scaled, normalized = (
         span(shares(f"food-5-{name}")).replace(" (", ", ").replace(" …", " to") for name in SCALES.values()
     )
@@ -91,5 +91,5 @@ def test_the_contest_of_64_worlds_of_a_device():
     shown = " ".join(page("README.md").split())
     assert "[in 64 new worlds](start.md#again-with-64-worlds-made-by-a-device)" in shown
     assert f"(s {text(s, 3)} {bounds}, p {small(p_of(values))})" in shown
-    told = f"in 64 new worlds it is {span(values)[:-1].replace(' …', ' to')}, p {small(p_of(values))})"
+    told = f"in 64 new worlds its share is {span(values)[:-1].replace(' …', ' to')}, p {small(p_of(values))})"
     assert told in page("../paper/paper.md").replace("\n", " ")
