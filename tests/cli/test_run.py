@@ -237,7 +237,9 @@ def test_seeds_are_read(text, seeds):
     assert parse_seeds(text) == seeds
 
 
-@pytest.mark.parametrize("text", ["", "a", "3-1", "-1", "1,,2", "1-", "9223372036854775808", "1,1-2", "0-99999"])
+@pytest.mark.parametrize(
+    "text", ["", "a", "3-1", "-1", "1,,2", "1-", "9223372036854775808", "1,1-2", "0-99999", "1,000", "1-010"]
+)
 def test_seeds_that_are_none_are_refused(text):
     with pytest.raises(hedon.ArgumentError, match="seeds: "):
         parse_seeds(text)

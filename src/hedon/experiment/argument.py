@@ -90,6 +90,10 @@ def parse_seeds(text: str, place: str = "seeds") -> tuple[int, ...]:
             raise ArgumentError(f"{place}: {brief(item)} is negative: a seed is a whole number from 0 to {MAX_SEED}")
         if not first.isdecimal() or (dash and not last.isdecimal()):
             raise ArgumentError(f"{place}: {brief(text)!r} is not a list of seeds such as 7, 1-5 or 1,4,7-9")
+        if any(len(number) > 1 and number.startswith("0") for number in (first, last)):
+            raise ArgumentError(
+                f"{place}: {brief(item)!r} begins with 0; commas separate seeds, so write 1000 rather than 1,000"
+            )
         if max(len(first), len(last)) > MAX_DIGITS:
             raise ArgumentError(f"{place}: a seed of {max(len(first), len(last)):,} digits is larger than {MAX_SEED}")
         low, high = int(first), int(last or first)
