@@ -75,6 +75,7 @@ MORE = (
     "env/test_record.py",
     "env/test_value.py",
     "machine/",
+    "property/test_combination.py",
     "property/test_damaged_file.py",
     "property/test_untrusted_checkpoint.py",
     "repository/test_device_text.py",
@@ -98,7 +99,7 @@ MORE = (
 """Files and folders that only `make test-more` runs, except for their tests marked `smoke`: browsers, emulated devices,
 processes that are killed, whole reports and sites."""
 
-SHARES = {"test_calibration.py": 4, "test_combination.py": 3, "test_reference_model.py": 4}
+SHARES = {"test_calibration.py": 4, "test_reference_model.py": 7}
 """Files of which `make test` runs one case of so many, and `make test-more` the others."""
 
 THINNED = {

@@ -30,7 +30,7 @@ def test_without_a_device_one_sentence_is_said(tmp_path: Path, backend: str, exp
 def test_the_help_and_the_error_list_the_same_backends(tmp_path: Path):
     every = "avx512, avx2, neon, portable, cuda"
     shown = " ".join(hedon("run", "--help", COLUMNS="200").stdout.replace("│", " ").split())
-    assert f"What computes: {every};" in shown
+    assert f"Instruction set or device: {every};" in shown
     answer = hedon("run", "baseline", "--backend", "quantum", cwd=tmp_path)
     assert (answer.returncode, answer.stderr) == (2, f"hedon: --backend 'quantum': is none of {every}\n")
 

@@ -164,6 +164,7 @@ def test_copies_and_pickles_go_on_alike(kind):
             np.testing.assert_array_equal(other.step(action)[0], seen)
 
 
+@pytest.mark.more
 def test_a_program_for_any_environment_of_gymnasium_trains_in_hedon():
     pytest.importorskip("jax")
     place = Path(__file__).parents[2] / "examples" / "vector_ppo.py"

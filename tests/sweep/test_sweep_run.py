@@ -44,7 +44,6 @@ def command(*words: str | Path) -> subprocess.Popen:
     return subprocess.Popen([sys.executable, "-c", START, *map(str, words)], start_new_session=True)
 
 
-@pytest.mark.smoke
 def test_a_killed_sweep_goes_on_to_the_same_table(tmp_path):
     """Killed by SIGKILL with all its processes, in the middle of its first batch."""
     file = sweep_file(tmp_path, STEPS)

@@ -46,7 +46,6 @@ def on_canvas(watched, x, y):
     return left, top, zoom
 
 
-@pytest.mark.smoke
 def test_agents_and_foods_are_drawn_where_the_records_have_them(run_folder, watch):
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link)

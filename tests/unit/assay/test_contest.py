@@ -39,6 +39,7 @@ def test_a_known_difference_is_found_with_its_size() -> None:
     assert bounds[0, -1] <= 2e-4 * step[-1] <= bounds[1, -1]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("share", [0.5, pytest.param(0.1, marks=pytest.mark.long)])
 def test_equal_groups_do_not_win(share: float) -> None:
     trials, significant, missed = 200, 0, 0

@@ -39,6 +39,7 @@ def code_of_the_guide() -> str:
     return next(block for block in blocks if "STUDY = Study(" in block)
 
 
+@pytest.mark.more
 def test_the_study_of_the_guide_is_listed_run_and_reported(tmp_path: Path, install: Install) -> None:
     install("waste", code_of_the_guide(), "waste:STUDY")
     assert "waste: Do fewer agents live" in command("study", "list", cwd=tmp_path).stdout

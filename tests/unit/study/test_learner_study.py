@@ -119,6 +119,7 @@ def run(folder: Path, *words: str) -> dict[str, list[dict]]:
     return tables
 
 
+@pytest.mark.more
 def test_it_goes_from_settings_to_a_page(tmp_path: Path) -> None:
     tables = run(tmp_path, NAME, "--seeds", "1-2", "--steps", "128")
     assert len(tables["learner_landscape_verdict"]) == 10
