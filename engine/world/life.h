@@ -130,7 +130,7 @@ HEDON_FN void count_steps(World& world) {
 }
 
 /// Adds the energy that living agents gained and spent in this step to the ledger: one thread for each sum, in the
-/// living order. The threads differ only in their addresses, since those of a warp take different branches in turn.
+/// living order. The threads differ only in their addresses, because a warp runs different branches in turn.
 template <class Crew>
 HEDON_FN void keep_ledger(const Crew& crew, World& world) {
   const StepScratch& scratch = world.scratch;
