@@ -2,6 +2,7 @@
 
 import atexit
 import http.server
+import re
 import shutil
 import tempfile
 import threading
@@ -122,6 +123,13 @@ class Watched:
         self.until(f"hedon.frame && hedon.frame.step === {step}")
         drawn = self.get("hedon.pictures")
         self.until(f"hedon.pictures > {drawn} + 2")
+
+
+def numbers(text: str) -> list[float]:
+    """The numbers in a text of the page, which have commas and a true minus sign."""
+    assert not re.search(r"(?<![\w-])-\d", text), f"a hyphen before a number: {text}"
+    found = re.findall(r"\N{MINUS SIGN}?\d[\d,]*\.?\d*", text)
+    return [float(each.replace(",", "").replace("\N{MINUS SIGN}", "-")) for each in found]
 
 
 def sized(width: int, ground: str = "light") -> dict[str, Any]:

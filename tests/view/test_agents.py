@@ -6,7 +6,7 @@ import numpy as np
 import polars as pl
 import pytest
 from split_run import record_species
-from view_page import run_live, run_server, serving
+from view_page import numbers, run_live, run_server, serving
 
 from hedon import load_config
 from hedon.record.reader import open_run
@@ -82,7 +82,7 @@ def test_the_table_has_the_living_of_the_records(table, run_folder):
         "w_poison",
         "w_action",
     ]
-    shown = np.array(table.get(ROWS), float)
+    shown = np.array([[numbers(cell)[0] for cell in row] for row in table.get(ROWS)])
     assert shown == pytest.approx(rows.select(columns).to_numpy().astype(float), abs=6e-4)
 
 
@@ -120,7 +120,7 @@ FILTERS = {
     "not (age >= 500 or w_normal<0)": ~((pl.col("age") >= 500) | (pl.col("w_normal") < 0)),
     "age > 500 or w_poison > 0 and w_action > 0": (pl.col("age") > 500)
     | (pl.col("w_poison") > 0) & (pl.col("w_action") > 0),
-    "-0.1 < w_normal <= 1e-1": (pl.col("w_normal") > -0.1) & (pl.col("w_normal") <= 0.1),
+    "\N{MINUS SIGN}0.1 < w_normal <= 1e-1": (pl.col("w_normal") > -0.1) & (pl.col("w_normal") <= 0.1),
     "w_normal > w_poison": pl.col("w_normal") > pl.col("w_poison"),
     "eaten_normal != eaten_poison AND neutral_2 > 0": (pl.col("eaten_normal") != pl.col("eaten_poison"))
     & (pl.col("neutral_2") > 0),
@@ -280,9 +280,8 @@ def test_a_rectangle_in_the_scatter_plot_picks_out_its_agents(table, run_folder)
     table.page.locator("#tab-agents").click()
     table.until(f"{COUNT}.startsWith('{picked.sum()} of ')")
     assert sorted(int(row[0]) for row in table.get(ROWS)) == table.get(PICKED)
-    assert (
-        table.page.locator("#agents-area").inner_text().startswith("In the rectangle of the scatter plot: w_normal -")
-    )
+    area = table.page.locator("#agents-area").inner_text()
+    assert area.startswith("In the rectangle of the scatter plot: w_normal \N{MINUS SIGN}")
     wanted = rows.filter(pl.Series(picked) & (pl.col("age") > 500))["agent_id"].to_list()  # both at once
     write(table, "age > 500", len(wanted))
     assert table.get(PICKED) == wanted

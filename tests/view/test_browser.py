@@ -2,7 +2,6 @@
 
 import io
 import json
-import re
 import shutil
 from contextlib import contextmanager
 
@@ -10,7 +9,7 @@ import numpy as np
 import polars as pl
 import pytest
 from matplotlib.image import imread
-from view_page import live_server, record, run_live, run_server, serving, site_server
+from view_page import live_server, numbers, record, run_live, run_server, serving, site_server
 
 from hedon import ConfigError, Simulation, _engine, load_config
 from hedon.config.layout import layouts, observation_columns
@@ -186,11 +185,10 @@ def test_an_agent_shows_what_it_smells_and_what_its_reward_is_made_of(watch):
             rows = shown_rows(watched)
             for kind in ("agent", "poison"):
                 right, left = (float(observed[i, noses[f"smell_{kind}_{n}"]]) for n in range(2))
-                said = [float(value) for value in re.findall(r"[\d.]+", rows[kind])]
-                assert said == pytest.approx([left, right], abs=6e-3)
+                assert numbers(rows[kind]) == pytest.approx([left, right], abs=6e-3)
             for k, kind in enumerate(config.food):
                 part = lives["genome"][i][genes.index(f"w_{kind}")] * lives["eaten"][i][k]
-                assert float(rows[f"… by {kind}"]) == pytest.approx(part, abs=6e-3)
+                assert numbers(rows[f"… by {kind}"])[0] == pytest.approx(part, abs=6e-3)
                 hungry += part != 0
             assert rows["… by action"] == "0"
         assert hungry > 3
@@ -219,8 +217,8 @@ def test_an_agent_shows_its_stores_and_what_it_observes(watch):
             watched.until("document.querySelector('#agent').textContent.includes('what else it observes')")
             rows = shown_pairs(watched)
             (held,) = (text for name, text in rows if name == "water" and " of " in text)
-            assert [float(number) for number in held.split(" of ")] == pytest.approx([lives["water"][i], 7], abs=6e-3)
-            shown = {name: float(text.split()[0].replace(",", "")) for name, text in rows if name in ("age", "moved")}
+            assert numbers(held) == pytest.approx([lives["water"][i], 7], abs=6e-3)
+            shown = {name: numbers(text)[0] for name, text in rows if name in ("age", "moved")}
             for channel, value in zip(layout.observed, observed[i], strict=True):
                 if channel.name in ("age", "moved"):
                     assert shown[channel.name] == pytest.approx(value * channel.scale, abs=6e-4)

@@ -1,14 +1,13 @@
 """The plots of the page give their numbers, are zoomed and smoothed, and are saved as tables and pictures."""
 
 import io
-import re
 
 import numpy as np
 import polars as pl
 import pytest
 from matplotlib.image import imread
 from split_run import record_species
-from view_page import live_server, run_live, run_server, serving, sized
+from view_page import live_server, numbers, run_live, run_server, serving, sized
 
 from hedon import load_config
 from hedon.experiment.plan import RunPlan
@@ -58,10 +57,6 @@ def center(watched, row):
         f"(({{ chart }}) => chart.valToPos(chart.data[0][{row}], 'x'))(hedon.plots.plots[0])",
     )
     return box["x"] + left, box["y"] + box["height"] / 2
-
-
-def numbers(text):
-    return [float(each.replace(",", "")) for each in re.findall(r"-?\d[\d,]*\.?\d*", text)]
 
 
 def assert_read(watched, rows, row):

@@ -1,6 +1,5 @@
 """The plots of the page tell species apart, in a replay as in a live world."""
 
-import re
 import shutil
 from pathlib import Path
 
@@ -8,7 +7,7 @@ import numpy as np
 import polars as pl
 import pytest
 from split_run import record_species
-from view_page import live_server, run_live, run_server, serving
+from view_page import live_server, numbers, run_live, run_server, serving
 
 from hedon import load_config
 from hedon.analysis.descent.genealogy import living_at
@@ -114,8 +113,7 @@ def test_each_weight_has_the_band_of_its_own_founders_and_mutations(unlike, watc
             share = ((walked < np.array(low)) | (walked > np.array(high))).mean(axis=0)
             assert (share > 0.015).all(), title  # the error of a share of 400 is 1.1 %
             assert (share < 0.09).all(), title
-            numbers = [float(each) for each in re.findall(r"-?[\d.]+", said[title].replace("\N{MINUS SIGN}", "-"))]
-            assert numbers == pytest.approx([mean[-1], low[-1], high[-1]], abs=2e-3)
+            assert numbers(said[title]) == pytest.approx([mean[-1], low[-1], high[-1]], abs=2e-3)
             where = "within" if low[-1] <= mean[-1] <= high[-1] else "outside"
             assert f"{where} drift" in said[title]
 

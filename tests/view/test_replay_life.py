@@ -3,7 +3,7 @@
 import polars as pl
 import pytest
 from split_run import record_species
-from view_page import Watched, live_server, run_live, run_server, serving
+from view_page import Watched, live_server, numbers, run_live, run_server, serving
 
 from hedon import Simulation, load_config
 from hedon.record.reader import open_run
@@ -35,10 +35,6 @@ def tables(watched: Watched) -> dict[str, dict[str, str]]:
     )
 
 
-def number(text: str) -> float:
-    return float(text.split()[0].replace(",", ""))
-
-
 def check(watched, row, title, meals):
     """Compares the panel with a row of the table of agents, and returns what stands for the step alone."""
     name = f"Agent {row['agent_id']}"
@@ -47,10 +43,10 @@ def check(watched, row, title, meals):
     found = tables(watched)
     assert set(found[name]) & {"reward", "children", *(f"{meal} eaten" for meal in meals)} == set()
     counted = found[title]
-    assert number(counted["children"]) == row["children"]
-    assert number(counted["reward"]) == pytest.approx(row["reward_sum"], abs=6e-3)
+    assert numbers(counted["children"])[0] == row["children"]
+    assert numbers(counted["reward"])[0] == pytest.approx(row["reward_sum"], abs=6e-3)
     for meal in meals:
-        assert number(counted[f"{meal} eaten"]) == row[f"eaten_{meal}"]
+        assert numbers(counted[f"{meal} eaten"])[0] == row[f"eaten_{meal}"]
     return found[name]
 
 
@@ -72,7 +68,7 @@ def test_counts_of_a_life_stand_under_the_title_that_is_true(species_run, watch)
         for title, rows in cases.items():
             for row in rows:
                 now = check(watched, row, title, ("normal", "prey"))
-                assert number(now["age"]) == STEP - row["birth_step"]
+                assert numbers(now["age"])[0] == STEP - row["birth_step"]
         later = agents.filter(pl.col("birth_step") > STEP).row(0, named=True)
         title = "in its whole life" if later["death_step"] is not None else "up to the last record of it"
         assert "age" not in check(watched, later, title, ("normal", "prey"))

@@ -70,8 +70,9 @@ def test_numbers_in_the_text_are_those_of_the_config(name):
     if name in worlds:
         settings = {each["path"]: each["value"] for each in worlds[name]["settings"]}
     found = Words(scene(name))
+    assert not [word for word in found.words if re.match(r"-\d", word)], "a hyphen is no minus sign"
     for path, text in found.bound + ([] if name == "sandbox" else found.knobs):
-        assert float(text) == settings[path], path
+        assert float(text.replace("\N{MINUS SIGN}", "-")) == settings[path], path
     assert found.bound or name in ("learning", "family", "evolve", "sandbox")
 
 

@@ -1,4 +1,5 @@
 // The range of a gene's mean under drift only: simulates neutral genes with the same law down the pedigree of the living.
+import { show } from "./element";
 import { columnOf, type Series } from "./series";
 import type { Lives } from "./lives";
 import type { Source } from "./source";
@@ -111,7 +112,7 @@ export function drift(source: Source, species: Species, gene: number): Band | st
   if (species.mating === "pairs") return recorded(source, species, gene) ?? "No band: children have two parents, and the neutral genes have another law.";
   if (layout.mutation_noise === "tabulated") return recorded(source, species, gene) ?? "No band: births share their noise, and the neutral genes have another law.";
   if (!source.loaded) return "No band yet: the records are being read.";
-  if (lives.size > MOST_LIVES) return `No band: more than ${MOST_LIVES.toLocaleString("en-US")} agents. The figures of hedon report have it.`;
+  if (lives.size > MOST_LIVES) return `No band: more than ${show(MOST_LIVES)} agents. The figures of hedon report have it.`;
   const law = species.laws[gene]!;
   const known = walked.get(source) ?? new Map<string, Walks>();
   walked.set(source, known);

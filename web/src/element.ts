@@ -32,12 +32,25 @@ export function table(rows: [string, Child][]): HTMLTableElement {
   return element("table", {}, body);
 }
 
-/** Formats a number for reading. */
+/** Formats a number for reading, with as few digits as it needs. */
 export function show(value: number | undefined, digits = 2): string {
   if (value === undefined || Number.isNaN(value)) return "–";
-  if (value === 0) return "0"; // including -0
-  if (Number.isInteger(value)) return value.toLocaleString("en-US");
-  return value.toLocaleString("en-US", { maximumFractionDigits: Math.abs(value) < 0.1 ? 4 : digits });
+  return readable(value, { maximumFractionDigits: Math.abs(value) < 0.1 ? 4 : digits });
+}
+
+/** Formats a number for a table, where all have the same number of decimals. */
+export const fixed = (value: number, decimals = 2): string => readable(value, exactly(decimals));
+
+/** Formats a number like `fixed`, with a plus sign if it is positive. */
+export const signed = (value: number, decimals = 2): string => readable(value, exactly(decimals), "+");
+
+const exactly = (decimals: number): Intl.NumberFormatOptions => ({ minimumFractionDigits: decimals, maximumFractionDigits: decimals });
+
+/** The one place that writes numbers for readers: with a true minus sign, and no sign for what is rounded to 0. */
+function readable(value: number, options: Intl.NumberFormatOptions, plus = ""): string {
+  const text = Math.abs(value).toLocaleString("en-US", options);
+  const sign = /^[0.]+$/.test(text) ? "" : value < 0 ? "−" : plus;
+  return sign + text;
 }
 
 /** Marks a canvas as an image and gives it an initial label, which is replaced by a description once it is drawn. */

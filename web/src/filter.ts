@@ -34,7 +34,8 @@ export function parseFilter(text: string, measures: Measure[]): Filter | string 
 }
 
 function tokens(text: string): Token[] {
-  return [...text.trimEnd().matchAll(TOKEN)].map(([, number, name, sign, other]): Token => {
+  const typed = text.trimEnd().replaceAll("−", "-"); // a number may be copied from the page
+  return [...typed.matchAll(TOKEN)].map(([, number, name, sign, other]): Token => {
     if (other !== undefined) throw new FilterError(`“${other}” cannot be used here. ${GRAMMAR}`);
     if (number !== undefined) return { text: number, kind: "number" };
     return name !== undefined ? { text: name, kind: "name" } : { text: sign!, kind: "sign" };

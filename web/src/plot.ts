@@ -115,7 +115,7 @@ export class Plot {
     const { content, view } = this;
     const size = (pixels: number) => pixels * times;
     const font = `${size(12)}px system-ui, sans-serif`;
-    const axis: uPlot.Axis = { stroke: () => styleColor("--quiet"), grid: { stroke: "#8882", width: size(1) }, ticks: { show: false }, size: size(52), gap: size(5), space: size(30), font, labelFont: font };
+    const axis: uPlot.Axis = { stroke: () => styleColor("--quiet"), grid: { stroke: "#8882", width: size(1) }, ticks: { show: false }, size: size(52), gap: size(5), space: size(30), font, labelFont: font, values: (_, places) => places.map((each) => show(each, 3)) };
     const series = content.series().map((each) => ({ ...each, width: size(each.width ?? 1), dash: each.dash?.map(size), points: { show: false } }));
     const main = (i: number) => series[i - 1]?.label !== undefined;
     return {

@@ -1,6 +1,6 @@
 // The time line: population over time, births and deaths, events, and a mark at the moment shown.
 import { drift } from "./drift";
-import { styleColor } from "./element";
+import { show, styleColor } from "./element";
 import { columnOf } from "./series";
 import type { Source } from "./source";
 import type { Event } from "./types";
@@ -91,7 +91,7 @@ export class Timeline {
       pen.fill();
     }
     pen.fillRect(toX(now) - 1, 0, 2, height);
-    canvas.title = marks.map((mark) => `step ${mark.step.toLocaleString("en-US")}: ${mark.text}`).join("\n");
+    canvas.title = marks.map((mark) => `step ${show(mark.step)}: ${mark.text}`).join("\n");
     canvas.setAttribute("aria-valuemin", String(Math.round(first)));
     canvas.setAttribute("aria-valuemax", String(Math.round(last)));
     canvas.setAttribute("aria-valuenow", String(Math.round(now)));

@@ -2,6 +2,7 @@
 
 import base64
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -126,8 +127,9 @@ def _render(template: str, page: Page) -> str:
         keep_trailing_newline=True,
     )
     environment.filters["verbatim"] = _Markdown
-    environment.filters["prose"] = _inline_html if is_html else _Markdown
-    environment.filters["text"] = _block_html if is_html else _Markdown
+    environment.filters["prose"] = _inline_html if is_html else _prose
+    environment.filters["text"] = _block_html if is_html else _prose
+    environment.filters["minus"] = with_minus
     context = {
         "page": page,
         "sections": [{"of": section, "blocks": list(map(_block, section.blocks))} for section in page.sections],
@@ -141,12 +143,25 @@ _COMMONMARK = MarkdownIt("commonmark", {"html": False})
 """Renders Markdown; HTML within it stays text."""
 
 
+_HYPHEN = re.compile(r"`[^`]*`|(?<![\w=.-])-(?=\.?\d)")
+"""Code, or the hyphen of a negative number, but not that of a setting such as "x=-1", which readers may copy."""
+
+
+def with_minus(text: str) -> str:
+    """The text with a minus sign, in place of a hyphen, before each negative number outside of code."""
+    return _HYPHEN.sub(lambda found: "\N{MINUS SIGN}" if found[0] == "-" else found[0], text)
+
+
 def _inline_html(text: str) -> Markup:
-    return Markup(_COMMONMARK.renderInline(text))
+    return Markup(_COMMONMARK.renderInline(with_minus(text)))
 
 
 def _block_html(text: str) -> Markup:
-    return Markup(_COMMONMARK.render(text))
+    return Markup(_COMMONMARK.render(with_minus(text)))
+
+
+def _prose(text: str) -> _Markdown:
+    return _Markdown(with_minus(text))
 
 
 def _markdown(value: Any) -> str:
@@ -166,13 +181,14 @@ def _block(block: Block) -> tuple[str, Any]:
 
 def _table(table: ResultTable) -> Mapping[str, Any]:
     headers, rows = cells(table)
+    shown = [[with_minus(cell) for cell in row] for row in rows]
     return {
         "title": table.title,
-        "note": table.note,
+        "note": with_minus(table.note),
         "headers": headers,
-        "rows": rows,
+        "rows": shown,
         "numeric": [is_numeric(rows, i) for i in range(len(headers))],
-        "markdown": pipe_table(headers, rows),
+        "markdown": pipe_table(headers, shown),
     }
 
 
@@ -195,7 +211,9 @@ def _condition(name: str, worlds: Sequence[WorldRecord]) -> dict[str, Any]:
         "name": name,
         "worlds": describe_worlds(worlds),
         "preset": f"{config.preset} ({config.fidelity})",
-        "changes": [(path, _value(old), _value(new)) for path, old, new in changed_settings(config)],
+        "changes": [
+            (path, with_minus(_value(old)), with_minus(_value(new))) for path, old, new in changed_settings(config)
+        ],
         "toml": dump_toml(config),
     }
 

@@ -1,5 +1,5 @@
 // Small plots for the article, on a canvas: axes with units, lines, dots, and the place under a pointer.
-import { styleColor } from "../element";
+import { show, styleColor } from "../element";
 
 export interface Axis {
   low: number;
@@ -39,9 +39,9 @@ export class Chart {
       ink.fillText(text, px, py);
     };
     const { clientWidth: width, clientHeight: height } = canvas;
-    for (const value of y.label ? new Set([y.low, zero, y.high]) : []) write(short(value), LEFT - 5, this.py(value) + 4, "right");
-    write(short(x.low), LEFT, height - BOTTOM + 15, "left");
-    write(short(x.high), width - RIGHT, height - BOTTOM + 15, "right");
+    for (const value of y.label ? new Set([y.low, zero, y.high]) : []) write(show(value), LEFT - 5, this.py(value) + 4, "right");
+    write(show(x.low), LEFT, height - BOTTOM + 15, "left");
+    write(show(x.high), width - RIGHT, height - BOTTOM + 15, "right");
     write(x.label, (LEFT + width - RIGHT) / 2, height - 5, "center");
     ink.save();
     ink.translate(11, (TOP + height - BOTTOM) / 2);
@@ -119,4 +119,3 @@ export class Chart {
 }
 
 const within = (value: number, { low, high }: Axis) => Math.min(Math.max(value, low), high);
-const short = (value: number) => value.toLocaleString("en-US", { maximumFractionDigits: 2 });

@@ -1,6 +1,6 @@
 // Scene 4: a feeling evolves before the reader's eyes, compared with genes that do nothing, with another seed and without learning.
 import { diverging, type Coloring } from "../color";
-import { show, styleColor } from "../element";
+import { show, signed, styleColor } from "../element";
 import type { Life } from "../types";
 import { Chart } from "./chart";
 import { histogram } from "./hero";
@@ -139,9 +139,9 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     stage,
     numbers: () => {
       const own = done.flatMap((each) => rowsOf(`seed ${each.seed}`, each.learns, quarters(each, each.feeling), quarters(each, furthest(each))));
-      const others = recorded.evolve.flatMap((each) => rowsOf("recorded", each.learns, each.feeling.map(signed), each.neutral.map(signed)));
+      const others = recorded.evolve.flatMap((each) => rowsOf("recorded", each.learns, each.feeling.map((value) => signed(value)), each.neutral.map((value) => signed(value))));
       const drawn = Array.from({ length: QUARTERS + 1 }, (_, i) => pad.guess[Math.round((i * (POINTS - 1)) / QUARTERS)]!);
-      const guessed = pad.whole ? [["your drawing", ...drawn.map(signed)]] : [];
+      const guessed = pad.whole ? [["your drawing", ...drawn.map((value) => signed(value))]] : [];
       const head = ["steps", ...drawn.map((_, i) => show((i * STEPS) / QUARTERS))];
       return { caption: "The mean feeling about food, and the mean of the gray gene that went furthest:", head, rows: [...guessed, ...(done.length > 0 ? own : others)] };
     },
@@ -177,8 +177,6 @@ const rowsOf = (world: string, learns: boolean, feeling: string[], neutral: stri
 /** A guess as it is kept in a link, with fewer points. */
 const kept = (guess: number[]): string =>
   Array.from({ length: KEPT }, (_, i) => guess[Math.round((i * (POINTS - 1)) / (KEPT - 1))]!.toFixed(2)).join("_");
-
-const signed = (value: number): string => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(2)}`;
 
 /** A sentence with the number of worlds with learning in which the feeling rose. */
 function tally(done: Course[]): string {

@@ -1,6 +1,6 @@
 // Scene 3: many agents that die and have children, and what children inherit.
 import { type Coloring, diverging } from "../color";
-import { counted, element, show, styleColor } from "../element";
+import { counted, element, fixed, show, styleColor } from "../element";
 import type { Life } from "../types";
 import { birth, chances, hazard } from "./chance";
 import { Chart } from "./chart";
@@ -94,8 +94,8 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
   const verdict = (known: [Life, Life][]): string => {
     const apart = (pairs: [Life, Life][]) => pairs.reduce((sum, [child, parent]) => sum + Math.abs(child.genome[meal]! - parent.genome[meal]!), 0) / pairs.length;
     const others = known.flatMap(([child]) => known.filter(([, parent]) => parent.id !== child.parent).map(([, parent]): [Life, Life] => [child, parent]));
-    const strangers = others.length > 0 ? `, but ${apart(others).toFixed(2)} from another parent's` : "";
-    return `Only what feels good. A child's feeling about meals is on average ${apart(known).toFixed(2)} from its parent's${strangers}. Its network starts from scratch.`;
+    const strangers = others.length > 0 ? `, but ${fixed(apart(others))} from another parent's` : "";
+    return `Only what feels good. A child's feeling about meals is on average ${fixed(apart(known))} from its parent's${strangers}. Its network starts from scratch.`;
   };
   const { canvas } = stage.arena.scene;
   canvas.addEventListener("click", (event) => {
@@ -118,7 +118,7 @@ export function family(section: HTMLElement, worlds: Worlds): Scene {
     stage,
     numbers: () => {
       const last = pairs().slice(-SHOWN);
-      const rows = last.map(([child, parent]) => [String(child.id), child.genome[meal]!.toFixed(2), parent.genome[meal]!.toFixed(2)]);
+      const rows = last.map(([child, parent]) => [String(child.id), fixed(child.genome[meal]!), fixed(parent.genome[meal]!)]);
       return { caption: "How a meal feels to the children born last, and to their parents:", head: ["child", "to the child", "to its parent"], rows };
     },
     open: async (place) => {

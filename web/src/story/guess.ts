@@ -1,4 +1,5 @@
 // A guess before the answer: a choice or a number that the reader commits to, and the answer shown afterwards.
+import { show } from "../element";
 
 /** Binds the `fieldset.guess` of a scene; `answer` shows the answer. */
 export function bindGuess(section: HTMLElement): { value: () => string; answer: (text: string) => void } {
@@ -10,7 +11,7 @@ export function bindGuess(section: HTMLElement): { value: () => string; answer: 
   const slider = box.querySelector<HTMLInputElement>("input[type=range]");
   slider?.addEventListener("click", take); // so that a guess can keep the slider where it is
   slider?.addEventListener("keydown", (event) => event.key === "Enter" && take(event));
-  slider?.addEventListener("input", () => (box.querySelector("output")!.textContent = Number(slider.value).toLocaleString("en-US")));
+  slider?.addEventListener("input", () => (box.querySelector("output")!.textContent = show(Number(slider.value))));
   return {
     value: () => value,
     answer: (text) => {

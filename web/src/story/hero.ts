@@ -1,6 +1,6 @@
 // The opening of the article: a recording of a world in which a feeling evolves, with histograms of two genes below it.
 import { diverging } from "../color";
-import { by, show, styleColor, surface } from "../element";
+import { by, show, signed, styleColor, surface } from "../element";
 import { fileAddress } from "../files";
 import { type Actor, load } from "./recording";
 import { CALM } from "./stage";
@@ -93,7 +93,7 @@ export async function hero(): Promise<Playing> {
     histogram("hero-feeling", now.map(({ feeling }) => feeling), head.limit, (value) => diverging(value, limit));
     histogram("hero-neutral", now.map(({ neutral }) => neutral), head.limit, () => styleColor("--before"));
     const mean = now.reduce((sum, { feeling }) => sum + feeling, 0) / now.length;
-    by("hero-clock").textContent = `step ${show(Math.round(moment) * head.every)}, ${now.length} alive, mean feeling ${mean < 0 ? "−" : "+"}${Math.abs(mean).toFixed(2)}`;
+    by("hero-clock").textContent = `step ${show(Math.round(moment) * head.every)}, ${now.length} alive, mean feeling ${signed(mean)}`;
   };
   const picture = (now: number) => {
     const passed = Math.min((now - before) / 1000, 0.1);

@@ -1,5 +1,5 @@
 // Scene 2: the creature learns by itself. Shows its meals over time, and its path before and after learning.
-import { counted, show, styleColor } from "../element";
+import { counted, fixed, show, styleColor } from "../element";
 import { Chart } from "./chart";
 import { ONE_COLOR } from "./creature";
 import { bindGuess } from "./guess";
@@ -50,7 +50,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
     const more = before > 0 && times > 1 ? `: ${show(times, times < 10 ? 1 : 0)} times as many` : "";
     const hurts = stage.value(MOVING) < 0;
     const guessed = guess.value() && !hurts ? ` You guessed ${guess.value()} times.` : "";
-    const moves = `It moves ${lastPace.toFixed(2)} units per step, at first ${pace(0, 2 * PATH).toFixed(2)}.`;
+    const moves = `It moves ${fixed(lastPace)} units per step, at first ${fixed(pace(0, 2 * PATH))}.`;
     const moral = hurts ? " It learned what felt good to it. That need not be good for it." : "";
     guess.answer(`It ate ${ate(before)} in its first ${FEW} rounds and ${ate(after)} in its last ${FEW}${more}.${guessed} ${moves}${moral}`);
   };
@@ -110,7 +110,7 @@ export function learning(section: HTMLElement, worlds: Worlds): Scene {
       const own = meals.length > ROUNDS && { meal: stage.value(MEAL), moving: stage.value(MOVING), rates: PRINTED.map((last) => rate(last - FEW, last)) };
       const shown = own ? [own] : recorded.learning;
       const head = ["rounds", ...shown.map(({ meal, moving }) => `meal ${show(meal)}, moving ${show(moving)}`)];
-      const rows = PRINTED.map((last, i) => [`${last - FEW + 1}–${last}`, ...shown.map(({ rates }) => rates[i]!.toFixed(1))]);
+      const rows = PRINTED.map((last, i) => [`${last - FEW + 1}–${last}`, ...shown.map(({ rates }) => fixed(rates[i]!, 1))]);
       return { caption: `Meals per 1,000 steps of ${own ? "your creature" : "two recorded creatures"}, and what a meal and moving felt like:`, head, rows };
     },
     open: (place) => openStage(stage, place, read),
