@@ -144,7 +144,7 @@ _COMMONMARK = MarkdownIt("commonmark", {"html": False})
 
 
 _HYPHEN = re.compile(r"`[^`]*`|(?<![\w=.-])-(?=\.?\d)")
-"""Code, or the hyphen of a negative number, but not that of a setting such as "x=-1", which readers may copy."""
+"""Code, or the hyphen of a negative number except in a setting such as "x=-1", which readers may copy."""
 
 
 def with_minus(text: str) -> str:
