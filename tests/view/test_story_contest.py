@@ -35,7 +35,9 @@ def test_the_worlds_of_a_contest_stand_in_a_table_and_are_compared_with_a_coin(a
     ends = [(1, 3, 5), (2, 9, 1), (3, 4, 4), (4, 7, 2)]
     for seed, yours, its in ends:
         watched.get(f"{stage('contest')}.results().push({{ seed: {seed}, you: {yours}, evolution: {its} }})")
-    watched.until(f"{SCORE}.endsWith('2 won, 1 lost, 1 drawn. A coin does that or better in 50 of 100 tries.')")
+    watched.until(
+        f"{SCORE}.endsWith('You beat evolution 2 : 1, with 1 draw. A coin does as well or better in 50 of 100 tries.')"
+    )
     with watched.page.expect_download() as waiting:
         watched.page.locator("#contest-picture").click()
     picture = waiting.value.path().read_bytes()
@@ -71,7 +73,7 @@ def test_reset_and_sliders_end_a_contest_that_runs_and_another_may_begin(article
     begin = watched.page.locator("#contest-one")
     reset = watched.page.locator("#contest").get_by_role("button", name="Reset")
     begin.click()
-    watched.until(f"{stage('contest')}.live.last > 100 && {SCORE}.startsWith('World of seed 1: step ')")
+    watched.until(f"{stage('contest')}.live.last > 100 && {SCORE}.startsWith('World 1, step ')")
     set_knob(watched, "contest", "species.you.reward.meal_coef", "-8")
     assert rests(watched, "contest")
     watched.get(f"{stage('contest')}.results().push({{ seed: 1, you: 3, evolution: 5 }})")
@@ -82,7 +84,7 @@ def test_reset_and_sliders_end_a_contest_that_runs_and_another_may_begin(article
     watched.until(f"{SCORE} === 'No world yet.'")
     assert watched.get(KNOBS) == ["0", "0"]
     begin.click()
-    watched.until(f"{stage('contest')}.live.last > 100 && {SCORE}.endsWith('of 20,480. ')")
+    watched.until(f"{stage('contest')}.live.last > 100 && {SCORE}.includes('of 20,480: you have ')")
 
 
 @pytest.mark.long
@@ -123,7 +125,7 @@ def test_the_lines_of_a_contest_stay_on_their_plot(article):
 @pytest.mark.long
 def test_a_link_of_a_contest_shows_its_feelings_while_its_world_runs(article):
     watched = article("contest", "#scene=contest&seed=3&step=9000&species.you.reward.meal_coef=-8")
-    watched.until(f"{SCORE}.startsWith('World of seed 3: step') && {SCORE}.endsWith('of 9,000. ')")
+    watched.until(f"{SCORE}.startsWith('World 3, step') && {SCORE}.includes('of 9,000: you have ')")
     assert watched.get(KNOBS) == ["-8", "0"]
     assert watched.get(f"{stage('contest')}.live.last") < 9000
     watched.page.locator("#contest").get_by_role("button", name="Reset").click()
@@ -180,7 +182,7 @@ def test_bad_feelings_lose_to_evolution(article):
     watched.until(f"{stage('contest')}.results().length === 1", 900)
     [end] = watched.get(f"{stage('contest')}.results()")
     assert end["you"] < end["evolution"]
-    watched.until("document.querySelector('#contest-score').textContent.includes('evolution wins')")
+    watched.until("document.querySelector('#contest-score').textContent.includes('Evolution beat you 1 : 0')")
     same = native(watched, "contest", "contest", 20480, *(f"{path}={value}" for path, value in BAD.items()))
     assert watched.get(f"{stage('contest')}.live.digest()") == same.digest()
 
@@ -192,7 +194,7 @@ def test_the_score_counts_descendants_and_a_press_on_the_map_plays(article):
     box = watched.page.locator("#contest-map").bounding_box()
     spot = {"x": box["width"] - 40, "y": box["height"] - 60}
     watched.page.locator("#contest-map").click(position=spot)
-    watched.until(f"{SCORE}.startsWith('World of seed 1: step ') && {stage('contest')}.live.last > 0")
+    watched.until(f"{SCORE}.startsWith('World 1, step ') && {stage('contest')}.live.last > 0")
     meal, moving = map(float, watched.get(KNOBS))
     assert meal > 5
     assert moving < -5

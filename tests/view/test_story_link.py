@@ -21,6 +21,7 @@ DAMAGED = {
     "scene=creature&seed=1&step=5&genome.action.initial_me": "genome.action.initial_me: is no setting",
     "scene=sandbox&seed=1&step=5&world=atlantis": "the world 'atlantis': there are predators, poison",
     "scene=sandbox&seed=1&step=5&world=toString": "the world 'toString': there are predators",
+    "scene=contest&seed=1&step=0&worlds=0": "it has worlds=0",
     "scene=evolve&seed=1&step=0&guess=1_2": "it has guess=1_2",
     "scene=constructor&seed=1&step=0": "the scene 'constructor': there are creature",
 }

@@ -40,7 +40,7 @@ def test_a_world_runs_and_tells_so_though_its_arena_was_never_seen(scene, button
     watched.until(f"document.querySelector('{button}').textContent.startsWith('{told}')")
     if scene == "contest":
         assert watched.page.locator(button).is_disabled()
-        watched.until("document.querySelector('#contest-score').textContent.startsWith('World of seed 1: step ')")
+        watched.until("document.querySelector('#contest-score').textContent.startsWith('World 1, step ')")
         watched.until(f"{stage(scene)}.seen")  # the page goes there
     else:
         assert not watched.get(f"{stage(scene)}.pictures")

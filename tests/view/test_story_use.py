@@ -150,8 +150,8 @@ def test_a_handout_has_a_picture_in_each_scene_and_a_line_for_each_answer(articl
     assert watched.get(cells) == ["12", "19"]
     texts = watched.get("[...document.querySelectorAll('#evolve .numbers tbody tr')].map((row) => row.innerText)")
     assert [row.split("\t") for row in texts] == [
-        ["feeling, seed 3", "0.00", "+0.10", "+0.20", "", ""],
-        ["gray gene, seed 3", "0.00", "\N{MINUS SIGN}0.10", "\N{MINUS SIGN}0.30", "", ""],
+        ["feeling, world 3", "0.00", "+0.10", "+0.20", "", ""],
+        ["gray gene, world 3", "0.00", "\N{MINUS SIGN}0.10", "\N{MINUS SIGN}0.30", "", ""],
     ]
 
 

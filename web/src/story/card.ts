@@ -1,12 +1,12 @@
-// A picture of the contest's result, for sharing: a headline above the arena and the map.
+// A picture of the contest's result, for sharing: a headline and a line about the creatures above the arena and the map.
 import { save } from "../csv";
 import { styleColor } from "../element";
 
 const [WIDTH, HEIGHT] = [1200, 630]; // the size at which other sites preview links
 const EDGE = 40;
-const TOP = 150; // y of the pictures, below the headline
+const TOP = 166; // y of the pictures, below the headline and the line after it
 
-export function saveResult(headline: string, pictures: HTMLCanvasElement[]): void {
+export function saveResult(headline: string, about: string, pictures: HTMLCanvasElement[]): void {
   const card = document.createElement("canvas");
   [card.width, card.height] = [WIDTH, HEIGHT];
   const ink = card.getContext("2d")!;
@@ -16,7 +16,9 @@ export function saveResult(headline: string, pictures: HTMLCanvasElement[]): voi
   ink.font = "700 64px Georgia, serif";
   ink.fillText(headline, EDGE, 90);
   ink.font = "24px system-ui, sans-serif";
-  ink.fillText(`Where do rewards come from? ${location.protocol === "file:" ? "" : location.host + location.pathname}`, EDGE, HEIGHT - 24);
+  ink.fillText(about, EDGE, 134);
+  const open = location.protocol === "https:"; // others can open neither a file nor a server on this computer
+  ink.fillText(`Where do rewards come from? ${open ? location.host + location.pathname : ""}`, EDGE, HEIGHT - 24);
   const width = (WIDTH - EDGE * (pictures.length + 1)) / pictures.length;
   pictures.forEach((picture, i) => {
     const scale = Math.min(width / picture.width, (HEIGHT - TOP - 70) / picture.height);

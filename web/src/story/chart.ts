@@ -68,8 +68,9 @@ export class Chart {
   }
 
   box(x0: number, y0: number, x1: number, y1: number, color: string): void {
+    const [left, top] = [Math.floor(this.px(x0)), Math.floor(this.py(y1))]; // whole pixels, so that no gaps are visible
     this.ink.fillStyle = color;
-    this.ink.fillRect(this.px(x0), this.py(y1), this.px(x1) - this.px(x0) + 0.5, this.py(y0) - this.py(y1) + 0.5);
+    this.ink.fillRect(left, top, Math.ceil(this.px(x1)) - left, Math.ceil(this.py(y0)) - top);
   }
 
   text(words: string, x: number, y: number, color: string, align: CanvasTextAlign = "left"): void {

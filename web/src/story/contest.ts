@@ -1,6 +1,6 @@
 // Scene 5: the reader's feelings compete with evolution's in one arena. The side with more descendants wins, in one world or several.
 import type { Coloring } from "../color";
-import { element, show, styleColor } from "../element";
+import { counted, element, show, styleColor } from "../element";
 import { saveResult } from "./card";
 import { Chart } from "./chart";
 import evidence from "./evidence.json";
@@ -51,7 +51,10 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   let busy = false;
   let turn = 0; // incremented when worlds begin or are discarded, so that code waiting for an earlier world stops
 
-  stage.onBegin = () => (course = []);
+  stage.onBegin = () => {
+    course = [];
+    if (results.length > 0) stage.notes.set("worlds", String(results.length + 1)); // for the link: earlier worlds count too
+  };
   stage.onMoment = ({ frame }) => {
     if (frame.step <= (course[course.length - 1]?.[0] ?? -1)) return;
     const born = [0, 0];
@@ -60,7 +63,7 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   };
   const able = () => {
     buttons[0]!.setAttribute("aria-disabled", String(busy)); // unlike `disabled`, this keeps the focus
-    buttons[1]!.setAttribute("aria-disabled", String(busy || results.length === 0));
+    buttons[1]!.setAttribute("aria-disabled", String(busy || stage.running || results.length === 0));
   };
   stage.onWords = () => {
     const [yours, its] = [styleColor("--you"), styleColor("--evolution")];
@@ -72,8 +75,9 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     able();
     if (results.length > 0) measured.hidden = false;
     if (!measured.hidden) drawMap();
-    const running = stage.running ? `World of seed ${stage.seed}: step ${show(stage.live.last)} of ${show(stage.aim)}. ` : "";
-    score.textContent = running + verdict(results) || "No world yet.";
+    const [, you, evolution] = course[course.length - 1] ?? [0, 0, 0];
+    const running = stage.running ? `World ${stage.seed}, step ${show(stage.live.last)} of ${show(stage.aim)}: you have ${you} descendants, evolution ${evolution}. ` : "";
+    score.textContent = running + verdict(results, stage.running) || "No world yet.";
     table.hidden = share.hidden = results.length === 0;
     const cells = ({ seed, you, evolution }: End) => [seed, you, evolution].map((value) => element("td", { text: String(value) }));
     table.tBodies[0]!.replaceChildren(...results.map((end) => element("tr", {}, ...cells(end))));
@@ -111,17 +115,19 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
   };
   const clear = () => {
     turn++;
+    stage.notes.delete("worlds");
     results = [];
     busy = false;
   };
   const play = () => {
     clear();
     stage.begin(1);
-    stage.host.querySelector(".view")!.scrollIntoView({ block: "nearest" }); // on a phone the arena is below the button
+    const view = stage.host.querySelector(".view")!;
+    (view.getBoundingClientRect().top < 0 ? view : score).scrollIntoView({ block: "nearest" }); // so that both are on a phone's screen
     void some(1);
   };
   buttons[0]!.addEventListener("click", () => busy || play());
-  buttons[1]!.addEventListener("click", () => busy || results.length === 0 || void some(MORE));
+  buttons[1]!.addEventListener("click", () => busy || stage.running || results.length === 0 || void some(MORE));
   const read = bindKnobs(section, stage, () => {
     clear();
     stage.begin(1);
@@ -136,9 +142,9 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
     play();
   });
   share.addEventListener("click", () => {
-    const [won, lost] = tally(results);
-    const headline = won > lost ? `I beat evolution ${won} : ${lost}` : won < lost ? `Evolution beat me ${lost} : ${won}` : `I drew with evolution, ${won} : ${lost}`;
-    saveResult(headline, [stage.arena.scene.canvas, map.canvas]);
+    const [meal, moving] = FEELINGS.map((path) => show(stage.value(path)));
+    const about = `To my creatures, teal, a meal feels like ${meal} and moving like ${moving}.`;
+    saveResult(headline(results, "I", "me"), about, [stage.arena.scene.canvas, map.canvas]);
   });
   section.addEventListener("reset", () => {
     clear();
@@ -154,28 +160,41 @@ export function contest(section: HTMLElement, worlds: Worlds): Scene {
       const [meal, moving] = FEELINGS.map((path) => (played ? show(stage.value(path)) : "____"));
       const blank = Array.from({ length: 1 + MORE }, (_, i) => [String(i + 1), "", ""]);
       const rows = played ? results.map(({ seed, you, evolution }) => [seed, you, evolution].map(String)) : blank;
-      return { caption: `Descendants if a meal feels like ${meal} and moving like ${moving} to your half:`, head: ["seed", "you", "evolution"], rows };
+      return { caption: `Descendants if a meal feels like ${meal} and moving like ${moving} to your half:`, head: ["world", "you", "evolution"], rows };
     },
     open: async (place) => {
       clear();
       const thisTurn = turn;
-      await openStage(stage, place, read);
-      if (thisTurn === turn) note();
+      const last = place.seed ?? stage.first;
+      const worlds = Math.max(Math.min(Number(place.notes.get("worlds") ?? 1), last), 1);
+      for (let seed = last - worlds + 1; seed <= last; seed++) {
+        await openStage(stage, seed < last ? { ...place, seed, step: STEPS, digest: "" } : place, read);
+        if (thisTurn !== turn) return;
+        note();
+      }
     },
   };
 }
 
-/** How the last world ended, and the probability that a fair coin does as well in the worlds that had a winner. */
-function verdict(results: End[]): string {
-  if (results.length === 0) return "";
-  const { you, evolution } = results[results.length - 1]!;
-  const last = `You have ${you} descendants, evolution ${evolution}: ${you > evolution ? "you win" : you < evolution ? "evolution wins" : "a draw"}.`;
-  if (results.length === 1) return last;
+/** How the last world ended, unless the next one runs already, the score, and how likely a fair coin reaches it. */
+function verdict(results: End[], running: boolean): string {
+  const end = results[results.length - 1];
+  if (!end) return "";
+  const last = running ? "" : `World ${end.seed}: you have ${end.you} descendants, evolution ${end.evolution}. `;
   const [won, lost] = tally(results);
-  const counts = `${last} ${won} won, ${lost} lost, ${results.length - won - lost} drawn.`;
-  if (won + lost === 0) return counts;
+  const drawn = results.length - won - lost;
+  const score = `${last}${headline(results, "You", "you")}${drawn > 0 && results.length > 1 ? `, with ${counted(drawn, "draw")}` : ""}.`;
+  if (results.length === 1 && !running) return `${score} One world may be luck.`;
+  if (results.length === 1 || won + lost === 0) return score;
   const chance = 100 * luck(Math.max(won, lost), won + lost);
-  return `${counts} A coin does that or ${won >= lost ? "better" : "worse"} in ${chance < 1 ? "less than 1" : show(chance, 0)} of 100 tries.`;
+  return `${score} A coin does as ${won >= lost ? "well or better" : "badly or worse"} in ${chance < 1 ? "less than 1" : show(chance, 0)} of 100 tries.`;
+}
+
+/** The score in words: with "I" and "me" for a picture, with "You" and "you" for the page. */
+function headline(results: End[], subject: string, object: string): string {
+  const [won, lost] = tally(results);
+  if (won === lost) return `${subject} drew with evolution, ${won} : ${lost}`;
+  return won > lost ? `${subject} beat evolution ${won} : ${lost}` : `Evolution beat ${object} ${lost} : ${won}`;
 }
 
 /** The numbers of worlds won by the reader and by evolution. */

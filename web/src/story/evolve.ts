@@ -87,7 +87,7 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     histogram("evolve-neutral", living.map((life) => life.genome[idle[0]!]!), LIMIT, () => styleColor("--before"));
   };
   const words = (): string => {
-    if (busy && stage.running) return `World of seed ${stage.seed}: step ${show(stage.live.last)} of ${show(STEPS)}, ${living.length} alive.`;
+    if (busy && stage.running) return `World ${stage.seed}, step ${show(stage.live.last)} of ${show(STEPS)}: ${living.length} alive.`;
     const last = done[done.length - 1];
     if (!last) return pad.whole ? "Now watch." : pad.guess.length > 0 ? "Go on to the right end." : "Draw first.";
     return `${report(last)} ${tally(done)}`.trim();
@@ -138,7 +138,7 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     section,
     stage,
     numbers: () => {
-      const own = done.flatMap((each) => rowsOf(`seed ${each.seed}`, each.learns, quarters(each, each.feeling), quarters(each, furthest(each))));
+      const own = done.flatMap((each) => rowsOf(`world ${each.seed}`, each.learns, quarters(each, each.feeling), quarters(each, furthest(each))));
       const others = recorded.evolve.flatMap((each) => rowsOf("recorded", each.learns, each.feeling.map((value) => signed(value)), each.neutral.map((value) => signed(value))));
       const drawn = Array.from({ length: QUARTERS + 1 }, (_, i) => pad.guess[Math.round((i * (POINTS - 1)) / QUARTERS)]!);
       const guessed = pad.whole ? [["your drawing", ...drawn.map((value) => signed(value))]] : [];

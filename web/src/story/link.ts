@@ -23,6 +23,7 @@ const FORMS: Record<string, RegExp> = {
   agent: WHOLE,
   world: /^/,
   color: /^(energy|food|moving)$/,
+  worlds: /^[1-9]\d?$/,
   guess: /^-?\d+(\.\d+)?(_-?\d+(\.\d+)?){10}$/,
 };
 
