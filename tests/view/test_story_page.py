@@ -172,6 +172,16 @@ def test_the_article_goes_into_a_folder_for_any_server(tmp_path, watch):
         watched.until("hedon.hero?.moment() > 0 && hedon.scenes.creature")
         watched.get("document.querySelector('#creature').scrollIntoView({ behavior: 'instant' })")
         watched.until("hedon.scenes.creature.stage.live?.last > 0")
+        ids = set(watched.get("[...document.querySelectorAll('[id]')].map((each) => each.id)"))
+        links = set(watched.get("[...document.querySelectorAll('a[href]')].map((each) => each.getAttribute('href'))"))
+        inside = {link for link in links if link.startswith("#") and not link.startswith("#scene=")}
+        assert {link[1:] for link in inside} <= ids
+        assert {link for link in links if not link.startswith("#")} == {
+            "index.html",
+            "https://arxiv.org/abs/2406.15016",
+        }
+        watched.page.get_by_role("link", name="a world of your own").click()
+        watched.until("window.hedon?.source?.ready")
 
 
 def test_a_site_without_the_article_says_so(tmp_path, browser):

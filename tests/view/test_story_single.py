@@ -1,6 +1,7 @@
 """The article as one file: a browser opens it without a server, and its worlds are those of Python."""
 
 import gzip
+import re
 
 import pytest
 from command import hedon as command
@@ -8,6 +9,8 @@ from story_page import native, run_to, stage
 from view_page import Watched
 
 pytest_plugins = ("view_fixture",)
+
+PAPER = "https://arxiv.org/abs/2406.15016"
 
 
 @pytest.fixture(scope="module")
@@ -23,6 +26,8 @@ def test_it_is_small_and_asks_for_nothing(file):
     assert len(gzip.compress(file.read_bytes())) < 1_100_000
     assert 'src="./' not in text
     assert 'href="./' not in text
+    assert set(re.findall(r'<a href="([^#"][^"]*)"', text)) == {PAPER}, "the live page is in another file"
+    assert "<code>hedon view --live</code>" in text
 
 
 def test_it_plays_and_has_the_bits_of_python_without_a_server(file, browser):

@@ -51,6 +51,7 @@ def write_single(path: Path, told: Mapping[str, Any]) -> int:
         (r'<script type="module"[^>]*></script>\s*', ""),
         (r'<link rel="stylesheet"[^>]*>', f"<style>{style}</style>"),
         (r'\s*<meta property="og:image"[^>]*>', ""),  # needs a web address, which the file lacks
+        (r'<a href="index\.html">[^<]*</a>', "a world of your own (<code>hedon view --live</code>)"),
         (r'(?<=src=")[^"]*hero\.jpg', picture),
         (r"(?=</body>)", f"{blocks}\n<script>{script}</script>\n"),
     ):
