@@ -8,6 +8,7 @@ export interface Axis {
 }
 
 const [LEFT, BOTTOM, TOP, RIGHT] = [46, 34, 10, 10]; // pixels around the plot
+const GAP = 9; // pixels between the numbers and the axis, on which a dot may lie
 const NAME = 12; // pixels between the middle of a dot and its name
 const SPOT = 8; // radius of a dot with a name [pixel]
 
@@ -39,7 +40,7 @@ export class Chart {
       ink.fillText(text, px, py);
     };
     const { clientWidth: width, clientHeight: height } = canvas;
-    for (const value of y.label ? new Set([y.low, zero, y.high]) : []) write(show(value), LEFT - 5, this.py(value) + 4, "right");
+    for (const value of y.label ? new Set([y.low, zero, y.high]) : []) write(show(value), LEFT - GAP, this.py(value) + 4, "right");
     write(show(x.low), LEFT, height - BOTTOM + 15, "left");
     write(show(x.high), width - RIGHT, height - BOTTOM + 15, "right");
     write(x.label, (LEFT + width - RIGHT) / 2, height - 5, "center");

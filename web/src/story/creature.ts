@@ -178,8 +178,9 @@ function drawGlow(stage: Stage, felt: number): void {
   const [x, y] = stage.at(frame.x[0]!, frame.y[0]!);
   const radius = stage.live.layout.species[0]!.radius * arena.scene.zoom * (ink.canvas.clientWidth / arena.scene.canvas.width);
   const glow = ink.createRadialGradient(x, y, radius, x, y, GLOW * radius);
-  glow.addColorStop(0, styleColor(felt > 0 ? "--flame" : "--blue"));
-  glow.addColorStop(1, "transparent");
+  const color = styleColor(felt > 0 ? "--flame" : "--blue");
+  glow.addColorStop(0, color);
+  glow.addColorStop(1, `${color}00`); // "transparent" would be black, and gray on the way there
   ink.globalAlpha = 0.7 * strength;
   ink.fillStyle = glow;
   ink.beginPath();
