@@ -31,6 +31,7 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
   const guess = bindGuess(section);
   const hint = section.querySelector<HTMLElement>(".hint")!;
   const second = section.querySelector<HTMLElement>("#creature-moving")!; // the second slider
+  const speed = section.querySelector<HTMLElement>("#creature-speed")!; // the words about it
   const meter = (name: string) => section.querySelector<HTMLElement>(`#creature-${name}`)!;
 
   const takeOver = () => {
@@ -105,7 +106,7 @@ export function creature(section: HTMLElement, worlds: Worlds): Scene {
     meter("meals").textContent = show(meals);
     meter("reward").textContent = show(life.reward, 2);
     meter("meals").classList.toggle("reached", meals >= ENOUGH && !strolling);
-    if (stage.changes.size > 0 || guess.value() || (meals >= ENOUGH && !strolling)) second.hidden = false;
+    if (stage.changes.size > 0 || guess.value() || (meals >= ENOUGH && !strolling)) second.hidden = speed.hidden = false;
     if (guess.value()) guess.answer("Yes. Let moving feel like 5 and drive in circles: reward grows without a meal, while energy falls.");
   };
 
