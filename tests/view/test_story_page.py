@@ -14,6 +14,7 @@ from view_page import CHROMIUM, Watched, serving, site_server, story_server
 
 from hedon import load_config
 from hedon.view.page import page_files
+from hedon.view.single import FONT
 from hedon.view.story import PAGE, SCENES, story
 
 pytest_plugins = ("view_fixture",)
@@ -79,7 +80,7 @@ def test_numbers_in_the_text_are_those_of_the_config(name):
 def test_the_article_is_small():
     """Compressed: what a reader loads, of the two modules the one that the browser takes."""
     names = [PAGE, "hedon.wasm", "hedon-relaxed.wasm", "assets/story.js", "assets/story.css", "assets/live.worker.js"]
-    names += ["assets/shared.js", "assets/member.worker.js"]
+    names += ["assets/shared.js", "assets/member.worker.js", FONT]
     told = len(gzip.compress(json.dumps(story()).encode()))
     sizes = {name: len(gzip.compress(page_files()[name].read_bytes())) for name in names}
     both = sum(size for name, size in sizes.items() if name.endswith(".wasm"))
@@ -89,6 +90,15 @@ def test_the_article_is_small():
     assert page_files()["hero.jpg"].stat().st_size < 130_000
     stills = [page_files()[f"still/{name}.jpg"].stat().st_size for name in TEXTS]
     assert max(stills) < 50_000, "loaded only where a world cannot run"
+
+
+def test_the_font_is_small_and_comes_with_its_license(server, browser):
+    assert page_files()[FONT].stat().st_size < 25_000
+    assert "SIL OPEN FONT LICENSE Version 1.1" in page_files()["font-license.txt"].read_text()
+    watched = Watched(browser.new_page(), server.link + PAGE)
+    watched.until("[...document.fonts].length === 1 && [...document.fonts][0].status === 'loaded'")
+    watched.page.close()
+    assert watched.faults == []
 
 
 def test_the_numbers_of_the_contest_are_those_of_the_committed_results():

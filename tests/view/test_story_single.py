@@ -10,6 +10,7 @@ from view_page import Watched
 
 pytest_plugins = ("view_fixture",)
 
+FONT_LOADED = "document.fonts.check('600 27px Fraunces') && [...document.fonts][0].status === 'loaded'"
 PAPER = "https://arxiv.org/abs/2406.15016"
 
 
@@ -26,6 +27,8 @@ def test_it_is_small_and_asks_for_nothing(file):
     assert len(gzip.compress(file.read_bytes())) < 1_100_000
     assert 'src="./' not in text
     assert 'href="./' not in text
+    assert "url(./" not in text
+    assert "url(data:font/woff2;base64," in text
     assert set(re.findall(r'<a href="([^#"][^"]*)"', text)) == {PAPER}, "the live page is in another file"
     assert "<code>hedon view --live</code>" in text
 
@@ -37,6 +40,7 @@ def test_it_plays_and_has_the_bits_of_python_without_a_server(file, browser):
     watched = Watched(page, file.as_uri())
     watched.faults = [fault for fault in watched.faults if not fault.startswith("asked ")]
     watched.until("hedon.hero?.moment() > 1")
+    watched.until(FONT_LOADED)
     watched.get("document.querySelector('#family').scrollIntoView({ behavior: 'instant' })")
     watched.until(f"{stage('family')}.live?.ready")
     run_to(watched, "family", 300)

@@ -14,6 +14,7 @@ CONTENT_TYPES = {
     ".css": "text/css; charset=utf-8",
     ".json": "application/json",
     ".wasm": "application/wasm",
+    ".woff2": "font/woff2",
     ".parquet": "application/octet-stream",
 }
 

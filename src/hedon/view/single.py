@@ -13,8 +13,10 @@ from hedon.view.story import PAGE
 
 POLICY = (
     "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; "
-    "connect-src data: blob:; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'"
+    "connect-src data: blob:; style-src 'unsafe-inline'; font-src data:; img-src data: blob:; base-uri 'none'; "
+    "form-action 'none'"
 )
+FONT = "assets/fraunces-latin-600-normal.woff2"
 HELD = (
     "assets/story.js",
     "assets/shared.js",
@@ -43,8 +45,9 @@ def write_single(path: Path, told: Mapping[str, Any]) -> int:
     files = page_files()
     embedded = {name: files[name].read_bytes() for name in HELD} | {"data/story.json": to_json(told)}
     blocks = "\n".join(_held(name, content) for name, content in embedded.items())
-    picture = f"data:image/jpeg;base64,{base64.b64encode(files['hero.jpg'].read_bytes()).decode()}"
+    picture, font = (_data_url(kind, files[name]) for name, kind in (("hero.jpg", "image/jpeg"), (FONT, "font/woff2")))
     style, script = (files[name].read_text(encoding="utf-8") for name in ("assets/story.css", "single.js"))
+    style = style.replace(f"url(./{Path(FONT).name})", f"url({font})")
     page = files[PAGE].read_text(encoding="utf-8")
     for pattern, text in (
         (r'(?<=http-equiv="Content-Security-Policy")\s+content="[^"]*"', f' content="{POLICY}"'),
@@ -60,6 +63,10 @@ def write_single(path: Path, told: Mapping[str, Any]) -> int:
     content = page.encode()
     write_atomically(path, lambda file: file.write(content))
     return len(content)
+
+
+def _data_url(kind: str, path: Path) -> str:
+    return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
 
 
 def _held(name: str, content: bytes) -> str:

@@ -13,7 +13,7 @@ export function saveResult(headline: string, about: string, pictures: HTMLCanvas
   ink.fillStyle = styleColor("--page");
   ink.fillRect(0, 0, WIDTH, HEIGHT);
   ink.fillStyle = styleColor("--ink");
-  ink.font = "700 64px Georgia, serif";
+  ink.font = "600 64px Fraunces, Georgia, serif";
   ink.fillText(headline, EDGE, 90);
   ink.font = "24px system-ui, sans-serif";
   ink.fillText(about, EDGE, 134);
