@@ -170,7 +170,7 @@ const quarters = ({ step }: Course, values: number[]): string[] =>
 
 /** Both rows of a world on the handout. */
 const rowsOf = (world: string, learns: boolean, feeling: string[], neutral: string[]): string[][] => {
-  const name = learns ? world : `${world}, unable to learn`;
+  const name = learns ? world : `${world}, no learning`;
   return [[`feeling, ${name}`, ...feeling], [`gray gene, ${name}`, ...neutral]];
 };
 
