@@ -47,6 +47,11 @@ def test_a_guess_is_drawn_by_pointer_and_by_keys_before_the_world_runs(article):
     for _ in range(41):
         other.page.keyboard.press("ArrowRight")
     other.until(READY)
+    other.get("document.querySelector('#evolve-plot').scrollIntoView({ behavior: 'instant', block: 'start' })")
+    top = "document.querySelector('#evolve .view').getBoundingClientRect().top"
+    assert other.get(top) < 0
+    other.get("document.querySelector('#evolve-run').click()")
+    other.until(f"{top} > -1 && {EVOLVE}.live.last > 0")
 
 
 def test_a_finger_draws_and_scrolls_over_the_result(article):

@@ -106,6 +106,7 @@ export function evolve(section: HTMLElement, worlds: Worlds): Scene {
     stage.begin(seed);
     const course = now;
     draw();
+    stage.host.querySelector(".view")!.scrollIntoView({ block: "nearest" }); // which may be above the plot just drawn into
     await stage.runTo(STEPS);
     if (course !== now) return; // another world has begun in the meantime
     busy = false;
