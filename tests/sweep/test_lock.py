@@ -36,7 +36,7 @@ def test_a_second_process_on_a_folder_is_refused_by_a_sentence(tmp_path):
     assert second.returncode == 2
     assert f"(process {first.pid} on " in second.stderr
     said = " ".join(second.stderr.split())
-    assert said.startswith(f"hedon: {place} is being made by another process"), said
+    assert f"hedon: {place} is being made by another process" in said, said
     assert said.endswith("wait for it, stop it first, or give each its --part"), said
     with lock(Store(str(place)), (1, 1)):
         """What a process held, it holds no more when it has ended."""
