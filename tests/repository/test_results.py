@@ -102,7 +102,7 @@ def test_fear_by_the_sequels_senses():
     for (label, one, other), difference, own, corrected in zip(named, differences, p, holm(p), strict=True):
         row = f"| **{label}**: seeing predators | {span(one)} | {span(other)} | **{span(difference)}** |"
         assert f"{row} {p_text(own)}, **{p_text(corrected)}** |" in shown
-        told = f"({'slope ' if label == 'children' else ''}{span(difference)[:-1].replace(' (', ', ')})"
+        told = f"({'difference in slope ' if label == 'children' else ''}{span(difference)[:-1].replace(' (', ', ')})"
         assert told in page("../paper/paper.md").replace("\n", " ")
     founders = table("predator/fear/predator.parquet")
     relative = [pl.col(name) / pl.col(name).mean().over("seed") for name in ("offspring", "descendants")]
