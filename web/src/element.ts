@@ -35,20 +35,24 @@ export function table(rows: [string, Child][]): HTMLTableElement {
 /** Formats a number for reading, with as few digits as it needs. */
 export function show(value: number | undefined, digits = 2): string {
   if (value === undefined || Number.isNaN(value)) return "–";
-  return readable(value, { maximumFractionDigits: Math.abs(value) < 0.1 ? 4 : digits });
+  return readable(value, 0, Math.abs(value) < 0.1 ? 4 : digits);
 }
 
 /** Formats a number for a table, where all have the same number of decimals. */
-export const fixed = (value: number, decimals = 2): string => readable(value, exactly(decimals));
+export const fixed = (value: number, decimals = 2): string => readable(value, decimals, decimals);
 
 /** Formats a number like `fixed`, with a plus sign if it is positive. */
-export const signed = (value: number, decimals = 2): string => readable(value, exactly(decimals), "+");
+export const signed = (value: number, decimals = 2): string => readable(value, decimals, decimals, "+");
 
-const exactly = (decimals: number): Intl.NumberFormatOptions => ({ minimumFractionDigits: decimals, maximumFractionDigits: decimals });
+/** Formats by their least and most decimals; to make one takes fifty times as long as to use it. */
+const formats = new Map<string, Intl.NumberFormat>();
 
 /** The one place that writes numbers for readers: with a true minus sign, and no sign for what is rounded to 0. */
-function readable(value: number, options: Intl.NumberFormatOptions, plus = ""): string {
-  const text = Math.abs(value).toLocaleString("en-US", options);
+function readable(value: number, minimumFractionDigits: number, maximumFractionDigits: number, plus = ""): string {
+  const key = `${minimumFractionDigits} ${maximumFractionDigits}`;
+  let format = formats.get(key);
+  if (!format) formats.set(key, (format = new Intl.NumberFormat("en-US", { minimumFractionDigits, maximumFractionDigits })));
+  const text = format.format(Math.abs(value));
   const sign = /^[0.]+$/.test(text) ? "" : value < 0 ? "−" : plus;
   return sign + text;
 }
