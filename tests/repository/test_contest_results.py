@@ -54,11 +54,11 @@ def test_rows_of_contests_by_other_ways_of_learning(arms):
 
 def test_the_arm_in_which_the_large_reward_wins():
     each = {arm: shares(f"food-5-{name}") for arm, name in ARMS.items()}
-    alone, rate, shown = [p_of(values) for values in each.values()], each["ten times the rate"], page("start.md")
+    alone, rate = [p_of(values) for values in each.values()], each["ten times the rate"]
+    shown = " ".join(page("start.md").split())
     above = (rate - shares("food-5-24") > 0).sum()
     assert (
-        f"in {(rate > 0).sum()} of 24 worlds, and its share is larger than by the\n  baseline's rate in {above}."
-        in shown
+        f"in {(rate > 0).sum()} of 24 worlds, and its share is larger than at the baseline's rate in {above}." in shown
     )
     own, corrected = p_text(alone[0]), p_text(holm(alone)[0])
     assert f"(24 worlds; t test, p {own}, Holm-corrected {corrected})" in " ".join(page("README.md").split())
@@ -87,7 +87,7 @@ def test_the_contest_of_64_worlds_of_a_device():
     assert len(values) == 64
     end = f"the share at the end {span(values)} above one half, in {(values > 0).sum()} of 64 worlds"
     told = f"s is {text(s, 3)} {bounds}, {end}; p {small(p_of(values))} by t"
-    assert told in page("start.md").replace("\n", " ")
+    assert told in " ".join(page("start.md").split())
     shown = " ".join(page("README.md").split())
     assert "[in 64 new worlds](start.md#again-with-64-worlds-made-by-a-device)" in shown
     assert f"(s {text(s, 3)} {bounds}, p {small(p_of(values))})" in shown
