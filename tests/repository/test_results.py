@@ -89,7 +89,7 @@ def test_slopes_of_prey_by_group_of_founders(outcome, weight, label):
 
 def test_fear_by_the_sequels_senses():
     """Two named tests over forty groups, each group with predators and without; and what was seen afterwards."""
-    weights, shown, named = FOUNDERS["predator"], page("predator.md"), []
+    weights, shown, named = FOUNDERS["predator"], " ".join(page("predator.md").split()), []
     for outcome, label in (("offspring", "children"), ("descendants", "living descendants")):
         by_world = [slopes(f"predator/fear/{name}.parquet", weights, outcome) for name in ("predator", "prey-alone")]
         assert [list(each) for each in by_world] == [list(range(11, 51))] * 2
@@ -339,18 +339,18 @@ def test_first_windows_beside_the_sequels_program(name):
 
 
 def test_worlds_that_keep_their_predators():
-    rows, shown = table("predator/survival/tables/sequel_alive.csv"), page("predator.md")
+    rows, shown = table("predator/survival/tables/sequel_alive.csv"), " ".join(page("predator.md").split())
     prey, predators = rows.filter(species="prey"), rows.filter(species="predator")
     ends = predators["died_out"].drop_nulls().to_list()
     assert prey["died_out"].null_count() == len(prey) == 20
-    assert f"at step {ends[0]:,}; none loses its prey" in " ".join(shown.split())
+    assert f"at step {ends[0]:,}; none loses its prey" in shown
     share = extinct_share(
         predators.select(pl.coalesce("died_out", "last_step")).to_series().to_numpy().astype(float),
         predators["died_out"].is_not_null().to_numpy(),
         SURVIVAL_STEPS,
     )
     kept = [100 * (1 - each) for each in (share.share, share.high, share.low)]
-    assert f"{kept[0]:.0f} % ({kept[1]:.0f} … {kept[2]:.0f} %, Kaplan" in shown.replace("\n", " ")
+    assert f"{kept[0]:.0f} % ({kept[1]:.0f} … {kept[2]:.0f} %, Kaplan" in shown
     p = stats.fisher_exact([[len(ends), len(predators) - len(ends)], [1, 5]])[1]
     assert f"Fisher's exact test sees no difference (p {p:.2f})" in shown
     both = predators.filter(pl.col("died_out").is_null())["seed"]
@@ -365,9 +365,7 @@ def test_worlds_that_keep_their_predators():
     judged = table("predator/survival/tables/verdict.csv")
     assert (judged["verdict"] == "undecided").all()
     assert [round(value * len(both)) for value in judged["value"]] == [0, 1, 1]
-    assert "97.5 % of neutral genes; in one world it is above, as is the weight of seeing prey." in " ".join(
-        shown.split()
-    )
+    assert "97.5 % of neutral genes; in one world it is above, as is the weight of seeing prey." in shown
 
 
 VERDICT = re.compile(
