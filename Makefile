@@ -17,7 +17,7 @@ unexport MAKEFLAGS
 # Where this is set, as in many containers, each process compiles all its Python modules again: seconds each time.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-more test-long everything suite suite-more static sanitized sync cuda stubs viewer demo docs wheels clean
+.PHONY: run test test-more test-long everything suite suite-more static compiled sync cuda stubs viewer demo docs wheels clean
 
 # The main job: a world in which a reward evolves within a minute on two cores.
 run: sync
@@ -27,9 +27,9 @@ run: sync
 test: everything
 	$(MAKE) --no-print-directory --jobs=2 --output-sync=line static suite
 
-# All other tests: pages in a browser, emulated devices, processes that are killed, sites, sanitizers.
+# Slower tests: pages in a browser, emulated devices, processes that are killed, sites, nvcc, a sanitizer.
 test-more: everything
-	$(MAKE) --no-print-directory --jobs=2 --output-sync=line sanitized suite-more
+	$(MAKE) --no-print-directory --jobs=2 --output-sync=line suite-more compiled
 
 # Not `sync` first, which would remove what these tests need and install it again.
 everything: tools $(UV)
@@ -50,9 +50,9 @@ static: tools $(UV)
 	$(RUN) clang-format --dry-run -Werror $(shell find engine tests/native -name '*.h' -o -name '*.cpp' -o -name '*.cu')
 	$(RUN) lint-imports
 	$(RUN) pyright src benchmarks calibrations release
-	$(RUN) --group cuda python tests/cuda.py
 
-sanitized: tools $(UV)
+compiled: tools $(UV)
+	$(RUN) --group cuda python tests/cuda.py
 	$(RUN) python tests/sanitize.py asan
 
 # The same questions asked hundreds of times, and those that take minutes: before a release, in addition to `make test` and `make test-more`.
