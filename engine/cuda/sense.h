@@ -96,11 +96,9 @@ HEDON_FN void output_of(const Block& block, const World& world, int32_t slot, co
 HEDON_FN void fetch_weights(const World& world, int32_t slot) {
   const NetworkShape& shape = world.species(slot).network;
   const ActingNetwork network = world.network(slot);
-  const int32_t wide = sizeof(float);
-  if (network.packed_weights == nullptr)
-    fetch_ahead(network.params, shape.size() * wide);
-  else
-    fetch_ahead(network.packed_weights, shape.pairs() * wide);
+  const bool rounded = network.packed_weights != nullptr;
+  const int32_t floats = rounded ? shape.pairs() : shape.size();
+  fetch_ahead(rounded ? network.packed_weights : network.params, floats * static_cast<int32_t>(sizeof(float)));
 }
 
 /// All agents observe and act. `step` takes this one, which fits a block, instead of the one in `world/act.h`.
