@@ -70,13 +70,13 @@ def _ended(name: str, scores: pl.DataFrame) -> str:
     title, means = weight_title(name), scores["mean"]
     title += "," if "," in title else ""
     low, high = scores["null_low"].mean(), scores["null_high"].mean()
-    chance = f"chance alone reaches {low:+z.2f} to {high:+z.2f}"
+    drift = f"drift would carry it to between {low:+z.2f} and {high:+z.2f}"
     if scores.height == 1:
-        return f"mean {title} is {means[0]:+z.2f}, and {chance}"
+        return f"mean {title} is {means[0]:+z.2f}, and {drift}"
     outside_count = scores.filter((pl.col("mean") < pl.col("null_low")) | (pl.col("mean") > pl.col("null_high"))).height
     verb = "lies" if outside_count == 1 else "lie"
     range_text = f"is {means.min():+z.2f} to {means.max():+z.2f} in {scores.height} worlds, on average"
-    return f"mean {title} {range_text} {means.mean():+z.2f}; {chance}, and {outside_count} of them {verb} outside"
+    return f"mean {title} {range_text} {means.mean():+z.2f}; {drift}, and {outside_count} of them {verb} outside"
 
 
 def _span(values: pl.Series) -> str:

@@ -44,8 +44,8 @@ def told(analysis: Analysis, score: float, means: tuple[float, ...] = (0.5,)) ->
 
 def test_a_weight_beyond_chance_is_selected(analysis):
     assert told(analysis, 3.5) == (
-        "Among the agents alive at the end (mean generation 8.3), the mean weight of normal food is +0.50, and chance "
-        "alone reaches -0.20 to +0.30: selected for (p = 0.0028, corrected for 6 tests against drift)."
+        "Among the agents alive at the end (mean generation 8.3), the mean weight of normal food is +0.50, and drift "
+        "would carry it to between -0.20 and +0.30: selected for (p = 0.0028, corrected for 6 tests against drift)."
     )
     assert "selected against (" in told(analysis, -3.5, (-0.5,))
 
