@@ -3,11 +3,13 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from traceback import extract_tb
 from typing import Any
 
 from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.topic.world import regime
 from hedon.analysis.world.record import WorldRecord, by_condition
+from hedon.error import HedonError
 from hedon.figure.named import NamedFigure
 from hedon.measure.world_measure import world_row
 from hedon.record.folder import FIGURES
@@ -15,6 +17,7 @@ from hedon.report.answer import FACTORS, WORLDS, Answer, drawn_file, table_secti
 from hedon.report.markdown import escape_markdown
 from hedon.report.page import FigureFile, Folded, Page, PageSection, versions
 from hedon.report.table import table_csv
+from hedon.study.catalogue import StudyError
 from hedon.study.gather import Gathered
 from hedon.study.item import Item, ItemInputs
 from hedon.study.study import Study
@@ -33,11 +36,14 @@ CONDITION = "condition"
 def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) -> Path:
     """Builds every item of some studies and writes it to a folder, replacing existing files.
 
+    An item that fails, as one of another package may, is shown with its error, and the others are written.
+
     Returns:
         The path of the HTML page.
 
     Raises:
         RecordError: The folder cannot be written.
+        StudyError: An item failed; everything else has been written.
     """
     inputs = {item.name: gathered.inputs(item) for study in studies for item in study.items}
     built_items = {item.name: _make(item, inputs[item.name], gathered) for study in studies for item in study.items}
@@ -62,7 +68,11 @@ def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) ->
         gathered.runs,
     )
     write_answer(folder, Answer(NAME, page, _json(gathered, built_items.values()), tables, files))
-    return folder / f"{NAME}.html"
+    path = folder / f"{NAME}.html"
+    failures = [f"{name}: {item.failure}" for name, item in built_items.items() if item.failure]
+    if failures:
+        raise StudyError(f"{'; '.join(failures)} (everything else is in {path})")
+    return path
 
 
 @dataclass(frozen=True)
@@ -72,12 +82,14 @@ class BuiltItem:
     Attributes:
         item: The item.
         worlds: The worlds that it was built from, one row per condition.
-        parts: Its figures and tables, in order.
+        parts: Its figures and tables, in order; if it failed, those made before.
+        failure: Why it failed; empty if it did not.
     """
 
     item: Item
     worlds: ResultTable | None
     parts: tuple[FigureFile | ResultTable, ...]
+    failure: str = ""
 
     @property
     def tables(self) -> list[ResultTable]:
@@ -90,9 +102,9 @@ class BuiltItem:
             part for part in self.parts if isinstance(part, FigureFile) or (part.shown and part.rows.height)
         ]
         folded = [] if self.worlds is None else [Folded(self.worlds)]
-        return PageSection(
-            self.item.title, [self.item.says, *(visible_parts or [NOTHING]), *folded], self.item.name, self.item.name
-        )
+        failure = [f"Failed: {escape_markdown(self.failure)}"] if self.failure else []
+        shown = visible_parts or ([] if failure else [NOTHING])
+        return PageSection(self.item.title, [self.item.says, *failure, *shown, *folded], self.item.name, self.item.name)
 
 
 def _lead(gathered: Gathered) -> str:
@@ -112,11 +124,22 @@ def _sections(study: Study, built_items: Mapping[str, BuiltItem]) -> list[PageSe
 
 
 def _make(item: Item, inputs: ItemInputs, gathered: Gathered) -> BuiltItem:
-    parts = (
-        drawn_file(part, f"{FIGURES}/{part.name}.svg") if isinstance(part, NamedFigure) else part
-        for part in item.make(inputs)
-    )
-    return BuiltItem(item, _worlds_table(item, inputs, gathered), tuple(parts))
+    parts = list[FigureFile | ResultTable]()
+    failure = ""
+    try:
+        for part in item.make(inputs):
+            parts.append(drawn_file(part, f"{FIGURES}/{part.name}.svg") if isinstance(part, NamedFigure) else part)
+    except Exception as error:  # an item of another package may raise anything
+        failure = _failure(error)
+    return BuiltItem(item, _worlds_table(item, inputs, gathered), tuple(parts), failure)
+
+
+def _failure(error: Exception) -> str:
+    """What failed, and in which line of which file."""
+    if isinstance(error, HedonError):
+        return str(error)
+    place = extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__}: {error} (line {place.lineno} of {place.filename})"
 
 
 def _worlds_table(item: Item, inputs: ItemInputs, gathered: Gathered) -> ResultTable | None:
@@ -179,6 +202,7 @@ def _json(gathered: Gathered, built_items: Iterable[BuiltItem]) -> dict[str, Any
                 "worlds": built_item.worlds.rows.to_dicts() if built_item.worlds is not None else [],
                 "figures": [part.path for part in built_item.parts if isinstance(part, FigureFile)],
                 "tables": [table.name for table in built_item.tables],
+                "failure": built_item.failure,
             }
             for built_item in built_items
         ],

@@ -20,7 +20,7 @@ ALL = "all"
 
 
 class StudyError(HedonError):
-    """No study or item has this name, or it cannot be loaded."""
+    """No study or item has this name, it cannot be loaded, or it fails."""
 
 
 @cache

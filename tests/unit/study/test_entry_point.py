@@ -82,3 +82,37 @@ def test_an_item_that_two_studies_have_is_told_with_its_study(install: Install) 
     ):
         choose(["hazard"])
     assert [study.name for study in choose(["mine/hazard"])] == ["mine"]
+
+
+FAILING = """
+from hedon.analysis.result import make_table
+from hedon.study import Item, Study
+
+
+def fail(inputs):
+    yield make_table("before", "Made before it fails", [{"answer": 42}])
+    raise ValueError("no such bin")
+
+
+def make(inputs):
+    return [make_table("after", "Made all the same", [{"answer": 43}])]
+
+
+STUDY = Study("halves", "", "", (Item("failing", "Fails", "", fail), Item("working", "Works", "", make)))
+"""
+
+
+def test_an_item_that_fails_is_shown_with_its_error_and_the_others_are_written(
+    tmp_path: Path, install: Install
+) -> None:
+    install("halves", FAILING, "halves:STUDY")
+    answer = command("study", "report", "halves", cwd=tmp_path)
+    page = tmp_path / "studies" / "halves" / "study.html"
+    assert answer.returncode == 2
+    assert re.search(r"failing: ValueError: no such bin \(line 8 of .*halves\.py\)", answer.stderr), answer.stderr
+    assert f"everything else is in {Path('studies/halves/study.html')}" in answer.stderr
+    assert "Traceback" not in answer.stderr
+    results = json.loads(page.with_suffix(".json").read_text(encoding="utf-8"))
+    assert [bool(item["failure"]) for item in results["items"]] == [True, False]
+    assert [results["tables"][name]["rows"] for name in ("before", "after")] == [[{"answer": 42}], [{"answer": 43}]]
+    assert "Failed: ValueError: no such bin" in page.read_text(encoding="utf-8")
