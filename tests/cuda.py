@@ -30,11 +30,13 @@ COST_SLACK = 0.15
 REGISTERS, RESIDENT_THREADS, SHARED_BYTES, SHARED_RESERVED = 65536, 2048, 228 * 1024, 1024
 SLACK = 8  # registers: another version of the compiler may take a few more or fewer
 LAUNCH = """
+#include "cuda/block.h"
 #include "cuda/learning_layout.h"
 #include <cstdio>
 int main() {
   using namespace hedon;
-  printf("%d %d %d", BLOCK_THREADS, BLOCK_THREADS / 16 * 2 * HIDDEN * 4, learning_layout(params_of(95)).total * 4);
+  const int step = static_cast<int>(STAGE_FIRST + stage_floats(VARIANT.staged));
+  printf("%d %d %d", BLOCK_THREADS, step * 4, learning_layout(params_of(95)).total * 4);
 }
 """
 """Prints the threads of a block, and the bytes of shared memory that a launch asks for: `StepWorlds::FLOATS`, and an

@@ -92,6 +92,12 @@ class Team {
     once([&] { body(Alone{}); });
   }
 
+  /// The scratch memory of a step, which blocks of a device keep closer to their threads: see `cuda/stage.h`.
+  template <class Scratch, class List>
+  const Scratch& stage(const Scratch& scratch, const List&) const {
+    return scratch;
+  }
+
   /// Calls body() on one member while the others wait.
   template <class Body>
   void once(Body&& body) {

@@ -1,10 +1,20 @@
 /// The threads of a CUDA block as the group for which every step rule is written: see `base/team.h`.
 #pragma once
 
+#include <cstring>
+
 #include "cuda/block_crew.h"
+#include "cuda/stage.h"
 #include "cuda/tile.h"
+#include "learning/network.h"
 
 namespace hedon {
+
+/// Floats of shared memory that each tile needs to sense and act: the two hidden layers of its agent.
+inline constexpr int SENSE_FLOATS = 2 * HIDDEN;
+
+/// The first float of shared memory behind them.
+inline constexpr int64_t STAGE_FIRST = int64_t{BLOCK_THREADS} / TILE * SENSE_FLOATS;
 
 /// One member of a block; all of them call the same functions.
 class Block {
@@ -54,6 +64,18 @@ class Block {
   HEDON_INLINE void once(Body&& body) const {
     if (rank() == 0) body();
     barrier();
+  }
+
+  /// The scratch memory of a step; what fits is moved to shared memory if the variant says so: see `stage.h`.
+  HEDON_INLINE const PhysicsScratch& stage(const PhysicsScratch& scratch, const NeighborList& list) const {
+    if constexpr (VARIANT.staged == 0) return scratch;
+    constexpr int words = sizeof(PhysicsScratch) / sizeof(float);
+    float* const memory = shared_memory() + STAGE_FIRST;
+    const char* const pointers = reinterpret_cast<const char*>(&scratch);
+    for_each(words, [&](int i) { memcpy(memory + i, pointers + i * sizeof(float), sizeof(float)); });
+    PhysicsScratch& moved = *reinterpret_cast<PhysicsScratch*>(memory);
+    once([&] { move_to_shared(moved, list, memory + words, VARIANT.staged); });
+    return moved;
   }
 
   /// Calls body() on one thread of the tile while the others wait.

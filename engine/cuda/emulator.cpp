@@ -51,6 +51,7 @@ struct EmulatedBlock {
   Barrier barrier;
   std::vector<Tile> tiles;
   std::unique_ptr<float[]> shared;
+  int64_t floats;  ///< of shared memory
   int threads;
 };
 
@@ -222,6 +223,10 @@ void tile_barrier() {
     self->block->tiles[static_cast<size_t>(self->rank / TILE)].barrier.wait();
 }
 float* shared_memory() { return self->block->shared.get(); }
+bool is_shared(const void* place) {
+  const float* const first = shared_memory();
+  return !std::less<const void*>{}(place, first) && std::less<const void*>{}(place, first + self->block->floats);
+}
 
 uint32_t tile_ballot(bool holds) {
   const uint32_t* const given = exchange(holds ? 1u : 0u);
@@ -242,6 +247,7 @@ void launch(int32_t blocks, int32_t threads, int64_t floats, const std::function
   for (int32_t b = 0; b < blocks; ++b) {
     EmulatedBlock block;
     block.threads = threads;
+    block.floats = floats;
     block.barrier = Barrier(threads);
     block.tiles = std::vector<Tile>(static_cast<size_t>(threads / TILE));
     block.shared.reset(new float[static_cast<size_t>(floats)]);

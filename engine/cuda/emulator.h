@@ -14,6 +14,9 @@ namespace hedon {
 /// For tests that such an error is detected.
 inline int64_t lost_barrier = -1, lost_tile_barrier = -1;
 
+/// Whether an address is in the shared memory of the block that is running.
+bool is_shared(const void* place);
+
 /// Runs blocks 0 … blocks - 1 of `threads` threads each, one block after another, as kernel(block).
 /// threads   a multiple of 16
 /// floats    of shared memory per block

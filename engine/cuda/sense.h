@@ -11,9 +11,6 @@
 
 namespace hedon {
 
-/// Floats of shared memory that each tile needs: the two hidden layers of its agent.
-inline constexpr int SENSE_FLOATS = 2 * HIDDEN;
-
 /// The kernels of a tile under the names of `RayKernels`.
 struct TileKernel {
   HEDON_INLINE void cull_circles(const RayTargets& targets, const RayFan& fan, int32_t first, int32_t last,

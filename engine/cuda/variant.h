@@ -17,18 +17,20 @@ struct Variant {
   int32_t learners;   ///< blocks of updates that a multiprocessor works on at the same time
   bool compact;       ///< an update keeps no gradient and no transposed copy of the square layer in shared memory
   bool fetch;         ///< the weights of an agent are fetched while it observes
+  int32_t staged;     ///< bodies whose substeps have room in shared memory, with as many pairs of each kind
   bool overlap;       ///< groups of worlds, of which one steps while another one learns; not known to the kernels
 };
 
 /// The list that `--variants` reads: each name is a value of HEDON_VARIANT.
 namespace variant {
-inline constexpr Variant shared_moments{"shared_moments", 512, 2, 2, 0, 1, false, false, false};
-inline constexpr Variant fetched_weights{"fetched_weights", 512, 2, 2, 0, 1, false, true, false};
-inline constexpr Variant global_moments{"global_moments", 512, 2, 0, 0, 1, false, false, false};
-inline constexpr Variant half_blocks{"half_blocks", 256, 4, 0, 2, 1, false, false, false};
-inline constexpr Variant overlap{"overlap", 256, 4, 0, 2, 1, false, false, true};
-inline constexpr Variant two_learners{"two_learners", 256, 4, 0, 2, 2, true, false, false};
-inline constexpr Variant overlap_two_learners{"overlap_two_learners", 256, 4, 0, 2, 2, true, false, true};
+inline constexpr Variant shared_moments{"shared_moments", 512, 2, 2, 0, 1, false, false, 0, false};
+inline constexpr Variant fetched_weights{"fetched_weights", 512, 2, 2, 0, 1, false, true, 0, false};
+inline constexpr Variant shared_bodies{"shared_bodies", 512, 2, 2, 0, 1, false, false, 384, false};
+inline constexpr Variant global_moments{"global_moments", 512, 2, 0, 0, 1, false, false, 0, false};
+inline constexpr Variant half_blocks{"half_blocks", 256, 4, 0, 2, 1, false, false, 0, false};
+inline constexpr Variant overlap{"overlap", 256, 4, 0, 2, 1, false, false, 0, true};
+inline constexpr Variant two_learners{"two_learners", 256, 4, 0, 2, 2, true, false, 0, false};
+inline constexpr Variant overlap_two_learners{"overlap_two_learners", 256, 4, 0, 2, 2, true, false, 0, true};
 }  // namespace variant
 
 /// The variant of a build that names none: the fastest of those measured on a device.

@@ -34,7 +34,7 @@ struct StepWorlds {
   int32_t first;  ///< row of the first world in `on.bootstrap`
   int64_t steps;
 
-  static constexpr int64_t FLOATS = int64_t{BLOCK_THREADS} / TILE * SENSE_FLOATS;
+  static constexpr int64_t FLOATS = STAGE_FIRST + stage_floats(VARIANT.staged);
   HEDON_FN int32_t blocks() const { return on.count; }
 
   HEDON_FN void operator()(int32_t b) const {

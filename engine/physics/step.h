@@ -171,6 +171,7 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
   const float usual_skin = config.neighbor_skin > spare ? config.neighbor_skin : spare;
   float skin = usual_skin;
   BatchReport report{};
+  const PhysicsScratch* work = &scratch;
   int repeat = 0;
   for (;; ++repeat) {
     if (build) {
@@ -178,11 +179,12 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
           [&](const auto& crew) { build_neighbors(crew, state, table, scratch, order.data, count, skin, fault); });
       if (fault.status != Status::ok) return false;
     }
+    work = &group.stage(scratch, state.neighbors);
     skin = head.skin;
     const float limit = SKIN_SHARE * skin;
     group.for_each_by_crew(head.batches, [&](const auto& crew, int32_t batch) {
       const auto attempt = [&]<class Solver, class Bodies>() {
-        try_batch<Solver, Bodies>(crew, config, table, constants, state, scratch, force, limit * limit, batch, visitor);
+        try_batch<Solver, Bodies>(crew, config, table, constants, state, *work, force, limit * limit, batch, visitor);
       };
       const bool sequential = config.solver == PhysicsSolver::sequential;
       if (table.own != 0)
@@ -219,10 +221,9 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
   const float free_path = speed * constants.glide;
   const int32_t stale = sqrtf(report.squared_moved) + free_path > SKIN_SHARE * skin;
   // Bodies by slot, not by batch; otherwise two members would alternately write to most cache lines.
-  group.for_each(static_cast<int>(state.neighbors.index.count),
-                 [&](int32_t slot) { commit_body(state, scratch, slot); });
+  group.for_each(static_cast<int>(state.neighbors.index.count), [&](int32_t slot) { commit_body(state, *work, slot); });
   group.for_each_by_crew(head.batches, [&](const auto& crew, int32_t batch) {
-    commit_pairs(crew, state, scratch, batch_range(state.neighbors, batch));
+    commit_pairs(crew, state, *work, batch_range(state.neighbors, batch));
     if (batch > 0) return;
     crew.once([&] {
       head.stale = stale;

@@ -6,6 +6,7 @@ from worlds import make_simulation
 
 QUICK = (VARIANTS[0], VARIANTS[-1])
 """The default, and the variant that differs most; `make test-long` builds all, each in a quarter of a minute."""
+SHARED = "shared_bodies"
 SHORT = ("world.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
 SIZES = {"capacity": 12, "initial_count": 6}
 SETTINGS = {
@@ -42,4 +43,24 @@ def test_groups_of_worlds_that_run_at_the_same_time_have_the_same_bits(monkeypat
     one, other = (make_simulation(*tiny, *sizes, seeds=tuple(range(6)), backend=each) for each in ("avx2", emulated))
     for simulation in (one, other):
         simulation.run(9)
+    assert [world.digest() for world in one.worlds] == [world.digest() for world in other.worlds]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ("population.capacity=400", "population.initial_count=390", "arena.width=2000", "arena.height=2000"),
+        ("population.capacity=64", "population.initial_count=60", "physics.neighbor_skin=300"),
+        ("population.capacity=64", "population.initial_count=60", "physics.solver=jacobi"),
+        ("population.capacity=64", "population.initial_count=60", "food.normal.growth_rate=5"),
+    ],
+    ids=["more bodies than fit", "more pairs than fit", "jacobi", "many meals"],
+)
+def test_what_does_not_fit_into_shared_memory_stays_where_it_was(settings: tuple[str, ...], monkeypatch):
+    """Each array by itself, anew in each step."""
+    emulated = emulate(monkeypatch, variant=SHARED)
+    one, other = (make_simulation(*SHORT, *settings, backend=backend) for backend in ("avx2", emulated))
+    for simulation in (one, other):
+        simulation.run(37)
     assert [world.digest() for world in one.worlds] == [world.digest() for world in other.worlds]

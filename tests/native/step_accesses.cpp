@@ -6,8 +6,8 @@
 /// The world runs WARM steps on the processor, then STEPS in the emulation. Between two barriers, a device waits for
 /// the thread with the longest way: its own accesses, where at each barrier, ballot or read of its tile it is set back
 /// to the longest way of the tile. A line for each barrier of the code: its address, and of the work before it, per
-/// step, how often it came, the longest way, and the accesses of the thread with the most, of the thread with the
-/// second most, and of all threads.
+/// step, how often it came, the longest way, the longest way if accesses of shared memory do not count, and the
+/// accesses of the thread with the most, of the thread with the second most, and of all threads.
 ///
 /// The emulation is compiled for the thread sanitizer, whose functions, called at each access, are those below; and the
 /// linker sends calls of what waits through `__wrap_…`. `tests/cuda_step.py` builds all of it.
@@ -15,26 +15,29 @@
 #include <map>
 
 #include "base/float_mode.h"
+#include "cuda/emulator.h"
 #include "cuda/thread.h"
 #include "world_file.h"
 
 namespace {
 
 struct Work {
-  int64_t calls, way, most, second, all;
+  int64_t calls, way, global_way, most, second, all;
 };
 
 constexpr int MOST_THREADS = 1024;
 bool counting = false;
 int arrived = 0;
 int arrived_of_tile[MOST_THREADS / hedon::TILE];
-int64_t way[MOST_THREADS];      ///< of each thread since the block's last barrier
-int64_t touched[MOST_THREADS];  ///< by itself
+int64_t way[MOST_THREADS];         ///< of each thread since the block's last barrier
+int64_t global_way[MOST_THREADS];  ///< without accesses of shared memory
+int64_t touched[MOST_THREADS];     ///< by itself
 std::map<const void*, Work> before_barrier;
 
-void touch() {
+void touch(const void* place) {
   if (!counting) return;
   ++way[hedon::thread_rank()];
+  global_way[hedon::thread_rank()] += !hedon::is_shared(place);
   ++touched[hedon::thread_rank()];
 }
 
@@ -42,10 +45,12 @@ void close(Work& work, int threads) {
   std::sort(touched, touched + threads);
   work.calls += 1;
   work.way += *std::max_element(way, way + threads);
+  work.global_way += *std::max_element(global_way, global_way + threads);
   work.most += touched[threads - 1];
   work.second += touched[threads - 2];
   for (int i = 0; i < threads; ++i) work.all += touched[i];
   std::fill_n(way, threads, 0);
+  std::fill_n(global_way, threads, 0);
   std::fill_n(touched, threads, 0);
 }
 
@@ -54,32 +59,34 @@ void meet_in_tile() {
   const int tile = hedon::thread_rank() / hedon::TILE;
   if (!counting || ++arrived_of_tile[tile] < hedon::TILE) return;
   arrived_of_tile[tile] = 0;
-  int64_t* const first = way + tile * hedon::TILE;
-  std::fill_n(first, hedon::TILE, *std::max_element(first, first + hedon::TILE));
+  for (int64_t* const ways : {way, global_way}) {
+    int64_t* const first = ways + tile * hedon::TILE;
+    std::fill_n(first, hedon::TILE, *std::max_element(first, first + hedon::TILE));
+  }
 }
 
 }  // namespace
 
 extern "C" {
-#define HEDON_TOUCH(name)                    \
-  void __tsan_read##name(void*) { touch(); } \
-  void __tsan_write##name(void*) { touch(); }
+#define HEDON_TOUCH(name)                               \
+  void __tsan_read##name(void* place) { touch(place); } \
+  void __tsan_write##name(void* place) { touch(place); }
 HEDON_TOUCH(1)
 HEDON_TOUCH(2)
 HEDON_TOUCH(4)
 HEDON_TOUCH(8)
 HEDON_TOUCH(16)
-void __tsan_read_range(void*, unsigned long) { touch(); }
-void __tsan_write_range(void*, unsigned long) { touch(); }
+void __tsan_read_range(void* place, unsigned long) { touch(place); }
+void __tsan_write_range(void* place, unsigned long) { touch(place); }
 void __tsan_func_entry(void*) {}
 void __tsan_func_exit() {}
 void __tsan_init() {}
 int32_t __tsan_atomic32_exchange(volatile int32_t* place, int32_t value, int) {
-  touch();
+  touch(const_cast<const int32_t*>(place));
   return __atomic_exchange_n(place, value, __ATOMIC_RELAXED);
 }
 uint64_t __tsan_atomic64_fetch_or(volatile uint64_t* word, uint64_t bits, int) {
-  touch();
+  touch(const_cast<const uint64_t*>(word));
   return __atomic_fetch_or(word, bits, __ATOMIC_RELAXED);
 }
 
@@ -136,8 +143,9 @@ int main(int count, char** arguments) {
   printf("alive %d\n", there->numbers(0).head().living_count);
   const double per = 1.0 / static_cast<double>(steps);
   for (const auto& [address, work] : before_barrier)
-    printf("%p %.3f %.1f %.1f %.1f %.1f\n", address, static_cast<double>(work.calls) * per,
-           static_cast<double>(work.way) * per, static_cast<double>(work.most) * per,
-           static_cast<double>(work.second) * per, static_cast<double>(work.all) * per);
+    printf("%p %.3f %.1f %.1f %.1f %.1f %.1f\n", address, static_cast<double>(work.calls) * per,
+           static_cast<double>(work.way) * per, static_cast<double>(work.global_way) * per,
+           static_cast<double>(work.most) * per, static_cast<double>(work.second) * per,
+           static_cast<double>(work.all) * per);
   return 0;
 }
