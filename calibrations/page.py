@@ -12,17 +12,19 @@ HEADER = ("number", "design", "kind", "nominal", "observed", "error", "answered"
 
 INTRODUCTION = """# How often hedon's numbers are wrong
 
-hedon prints p values, confidence intervals and verdicts. This page lists how often each of them is wrong. We measured
-this by simulation: we passed data with no effect, or with a known effect, to the function that prints each number.
+This page lists how often the p values, confidence intervals and verdicts that hedon prints are wrong. We measured this
+by passing simulated data with no effect, or with a known effect, to the functions that users call. Numbers that are
+known to be off are listed at the end.
 
-Every test run repeats some of the simulations and fails if a number leaves its level. To regenerate this page, run
-`python -m calibrations --write`.
+Every test run repeats some of the simulations and fails if an error rate is too far from its nominal rate. To
+regenerate this page, run `python -m calibrations --write`.
 
-- **False alarms**: how often a test rejects when there is no effect. **Missed**: how often an interval leaves out the
-  true value. Both should be close to the nominal rate, or below it.
+- **False alarms**: how often a test reports an effect when there is none. **Missed**: how often an interval does not
+  contain the true value. Both should be close to the nominal rate, or below it.
 - **Found**: how often a known effect is detected, which should be at least the nominal rate. **Bias**: the mean error,
   as a share of the true value or scale.
-- **Answered**: the share of simulated data sets for which the number is given. With too few worlds, it is withheld.
+- **Observed**: the result of the simulations ± its standard error.
+- **Answered**: the share of simulated data sets for which hedon gives the number. With too few worlds, it gives none.
 """
 
 

@@ -117,8 +117,8 @@ CALIBRATIONS += [
             LEVEL,
             _ordered(comparison, heavy),
             tolerance=0.03 if comparison == "spread" else 0.02,
-            note="If one condition has few worlds and the other has many, equal spreads are called different in up to "
-            "8 % of cases."
+            note="If one condition has few worlds and the other has many, the verdict calls equal spreads different in "
+            "up to 8 % of cases."
             if comparison == "spread"
             else "",
         )
