@@ -23,8 +23,8 @@ PICTURES = os.environ.get("HEDON_PICTURES")
 LARGEST = 300_000  # bytes of one picture
 HEAD = """# Gallery
 
-Places in the article `hedon view --story`, each with its picture. Add what stands below a picture to the end of the
-article's address: you get the same world, to the bit. A test makes this page and its pictures
+This page shows worlds from the article `hedon view --story`. To open one, add the line below its picture to the end of
+the article's address. You get the same world, bit for bit. A test writes this page and its pictures
 (`HEDON_PICTURES=1 uv run pytest tests/view/test_gallery.py`).
 """
 
@@ -58,14 +58,14 @@ PLACES = {
         "learning",
         81920,
         "It has learned",
-        "The gray path is how it began, the pink one how it goes on.",
+        "The gray line is its path before learning, the pink line its path after 80 rounds of learning.",
     ),
     "dislikes-moving": Place(
         "learning",
         "learning",
         20480,
         "Moving hurts",
-        "Moving hurts this one, and a meal is worth nothing to it: it moves far less than the one that likes meals.",
+        "Moving hurts this creature, and meals mean nothing to it. It moves far less than the one that likes meals.",
         {"food.normal.gene.initial_mean": "0", "genome.action.initial_mean": "-10"},
     ),
     "family": Place(
@@ -73,7 +73,7 @@ PLACES = {
         "family",
         2000,
         "One family",
-        "A founder, with a pink ring, and its four descendants among the others after 2,000 steps.",
+        "A founder, with a pink ring, and its four descendants, with violet rings, among the others after 2,000 steps.",
         notes={"agent": "13"},
     ),
     "predators": Place(
@@ -81,7 +81,7 @@ PLACES = {
         "predators",
         300,
         "Predators and prey",
-        "Six predators, with dark rings, have begun to eat. Amber is full of energy, blue has little.",
+        "Six predators, with dark rings, have begun to eat. Amber creatures are full of energy; blue ones have little.",
         notes={"world": "predators"},
     ),
     "pitfalls": Place(
@@ -89,7 +89,7 @@ PLACES = {
         "pitfalls",
         300,
         "Pitfalls",
-        "Triangles hurt all that touch them.",
+        "Triangles hurt every creature that touches them.",
         notes={"world": "pitfalls"},
     ),
 }
