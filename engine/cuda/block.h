@@ -66,7 +66,7 @@ class Block {
     barrier();
   }
 
-  /// The scratch memory of a step; what fits is moved to shared memory if the variant says so: see `stage.h`.
+  /// The scratch memory of a step, of which some variants keep what fits in shared memory: see `stage.h`.
   HEDON_INLINE const PhysicsScratch& stage(const PhysicsScratch& scratch, const NeighborList& list) const {
     if constexpr (VARIANT.staged == 0) return scratch;
     constexpr int words = sizeof(PhysicsScratch) / sizeof(float);
