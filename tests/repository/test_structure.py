@@ -21,7 +21,7 @@ ALLOWED = {
     "simulation": {"base", "config", "physics", "evolution", "learning", "kernel", "world"},
     "binding": {"base", "config", "physics", "evolution", "learning", "kernel", "world", "simulation"},
     "web": {"base", "config", "lanes", "physics", "evolution", "learning", "kernel", "world", "simulation"},
-    "cuda": {"base", "config", "lanes", "learning", "kernel", "simulation"},
+    "cuda": {"base", "config", "lanes", "learning", "kernel", "physics", "simulation"},
 }
 STEP_PATH = ("config", "physics", "evolution", "learning", "world", "kernel")
 FORBIDDEN_IN_STEP = re.compile(
