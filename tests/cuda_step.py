@@ -1,9 +1,9 @@
-"""The longest way of a step through a block, counted in accesses of memory: `python tests/cuda_step.py [--write]`.
+"""Counts the memory accesses on the longest path of a step through a block: `python tests/cuda_step.py [--write]`.
 
-No device is needed: `native/step_accesses.cpp` counts in the emulation, with as many threads as on a device. A thread
-of a device waits for most of its accesses, so the way says how long a step takes at least, once one knows how long an
-access takes; and it says which part to shorten first. Accesses of shared memory, which take less time, are counted both
-with the others and apart from them.
+No device is needed: `native/step_accesses.cpp` counts in the emulation, with as many threads as on a device. A device's
+thread waits for most of its accesses, so their number, multiplied by the time of an access, is the least time that a
+step takes, and it shows which part to shorten first. Two numbers are kept: all accesses, and those of global memory,
+which take longer than those of shared memory.
 """
 
 import json
@@ -65,7 +65,7 @@ def phase_of(program: Path, address: str) -> str:
 
 
 def count(program: Path, preset: str) -> dict[str, list[int]]:
-    """Accesses of the longest way of a step by phase: all of them, and those of global memory."""
+    """Accesses on the longest path of a step by phase: all accesses, and accesses of global memory."""
     with tempfile.TemporaryDirectory() as folder:
         world = Path(folder) / "world.txt"
         world.write_text(engine_text(load_config(preset), 1))

@@ -58,7 +58,7 @@ def test_groups_of_worlds_that_run_at_the_same_time_have_the_same_bits(monkeypat
     ids=["more bodies than fit", "more pairs than fit", "jacobi", "many meals"],
 )
 def test_what_does_not_fit_into_shared_memory_stays_where_it_was(settings: tuple[str, ...], monkeypatch):
-    """Each array by itself, anew in each step."""
+    """Each array is placed by itself, again in every step."""
     emulated = emulate(monkeypatch, variant=SHARED)
     one, other = (make_simulation(*SHORT, *settings, backend=backend) for backend in ("avx2", emulated))
     for simulation in (one, other):

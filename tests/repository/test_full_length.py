@@ -1,7 +1,7 @@
-"""The verdicts on the corrected worlds of the paper's length are those of the tool's rules, from the table of worlds.
+"""The committed verdicts on the corrected worlds of the paper's length agree with the tool's rules.
 
-Their records are too large to keep: `PYTHONPATH=tests uv run python -m repository.test_full_length` writes the verdicts
-again from `worlds.csv`.
+The records of these worlds are too large to keep, so the rules are applied to the table of worlds.
+`PYTHONPATH=tests uv run python -m repository.test_full_length` writes the verdicts again.
 """
 
 from collections.abc import Callable, Mapping

@@ -36,7 +36,7 @@ CONDITION = "condition"
 def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) -> Path:
     """Builds every item of some studies and writes it to a folder, replacing existing files.
 
-    An item that fails, as one of another package may, is shown with its error, and the others are written.
+    If an item fails, as an item from another package may, the page shows its error, and all other items are written.
 
     Returns:
         The path of the HTML page.
