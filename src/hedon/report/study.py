@@ -3,13 +3,12 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from traceback import extract_tb
 from typing import Any
 
 from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.topic.world import regime
 from hedon.analysis.world.record import WorldRecord, by_condition
-from hedon.error import HedonError
+from hedon.error import failure
 from hedon.figure.named import NamedFigure
 from hedon.measure.world_measure import world_row
 from hedon.record.folder import FIGURES
@@ -21,7 +20,7 @@ from hedon.study.catalogue import StudyError
 from hedon.study.gather import Gathered
 from hedon.study.item import Item, ItemInputs
 from hedon.study.study import Study
-from hedon.study.verdict import verdict
+from hedon.study.verdict import FAILED, verdict_table, verdicts
 from hedon.text import count
 
 NAME = "study"
@@ -36,20 +35,22 @@ CONDITION = "condition"
 def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) -> Path:
     """Builds every item of some studies and writes it to a folder, replacing existing files.
 
-    If an item fails, as an item from another package may, the page shows its error, and all other items are written.
+    If an item or the measure of a claim fails, as those from another package may, the page shows the error, and
+    everything else is written.
 
     Returns:
         The path of the HTML page.
 
     Raises:
         RecordError: The folder cannot be written.
-        StudyError: An item failed; everything else has been written.
+        StudyError: An item or a claim failed; everything else has been written.
     """
     inputs = {item.name: gathered.inputs(item) for study in studies for item in study.items}
     built_items = {item.name: _make(item, inputs[item.name], gathered) for study in studies for item in study.items}
     claims = [claim for study in studies for claim in study.claims]
     conditions = by_condition(gathered.demanded())
-    overall = [table for table in (*verdict(conditions, claims), *regime(conditions)) if not table.rows.is_empty()]
+    judged = verdicts(gathered.demanded(), claims)
+    overall = [table for table in (verdict_table(judged), *regime(conditions)) if not table.rows.is_empty()]
     tables = [
         *overall,
         *(table for built_item in built_items.values() for table in built_item.tables),
@@ -70,6 +71,7 @@ def write_studies(studies: Sequence[Study], gathered: Gathered, folder: Path) ->
     write_answer(folder, Answer(NAME, page, _json(gathered, built_items.values()), tables, files))
     path = folder / f"{NAME}.html"
     failures = [f"{name}: {item.failure}" for name, item in built_items.items() if item.failure]
+    failures += [f"{row.claim}: {row.reason}" for row in judged if row.reason.startswith(FAILED)]
     if failures:
         raise StudyError(f"{'; '.join(failures)} (everything else is in {path})")
     return path
@@ -125,21 +127,13 @@ def _sections(study: Study, built_items: Mapping[str, BuiltItem]) -> list[PageSe
 
 def _make(item: Item, inputs: ItemInputs, gathered: Gathered) -> BuiltItem:
     parts = list[FigureFile | ResultTable]()
-    failure = ""
+    reason = ""
     try:
         for part in item.make(inputs):
             parts.append(drawn_file(part, f"{FIGURES}/{part.name}.svg") if isinstance(part, NamedFigure) else part)
     except Exception as error:  # an item of another package may raise anything
-        failure = _failure(error)
-    return BuiltItem(item, _worlds_table(item, inputs, gathered), tuple(parts), failure)
-
-
-def _failure(error: Exception) -> str:
-    """What failed, and in which line of which file."""
-    if isinstance(error, HedonError):
-        return str(error)
-    place = extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__}: {error} (line {place.lineno} of {place.filename})"
+        reason = failure(error)
+    return BuiltItem(item, _worlds_table(item, inputs, gathered), tuple(parts), reason)
 
 
 def _worlds_table(item: Item, inputs: ItemInputs, gathered: Gathered) -> ResultTable | None:

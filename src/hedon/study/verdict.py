@@ -6,8 +6,9 @@ of worlds. For means it cannot be answered without their spread.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from hedon.analysis.result import ResultTable, make_table
 from hedon.analysis.world.extinction import species_loss, world_extinction
 from hedon.analysis.world.record import Conditions, WorldRecord, by_condition
+from hedon.error import failure
 from hedon.statistic.contrast import fisher_mid_p
 from hedon.statistic.minimum import FOR_FULL_LENGTH
 from hedon.study.catalogue import installed
@@ -25,6 +27,8 @@ from hedon.study.estimate import ClaimEstimate, compare, estimate
 HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"
 DIFFERS, NOT_SHOWN = "differs", "no difference shown"
 NO_SPREAD, NO_COUNT = "the source gives no spread", "the source gives no count"
+FAILED = "its measure failed: "
+"""The start of the reason of a claim whose measure raised an error."""
 TOO_FEW, CROSSES = f"fewer than {FOR_FULL_LENGTH} worlds", "the interval crosses the border"
 LEVEL = 0.05
 """Significance level of the second question."""
@@ -85,14 +89,19 @@ def verdict(conditions: Conditions, claims: Iterable[Claim | Order] | None = Non
     """
     if claims is None:
         claims = (claim for study in installed()[0].values() for claim in study.claims)
-    judged = verdicts((world for worlds in conditions.values() for world in worlds), claims)
-    return [make_table("verdict", "Claims about these conditions", [asdict(row) for row in judged], _NOTE)]
+    return [verdict_table(verdicts((world for worlds in conditions.values() for world in worlds), claims))]
+
+
+def verdict_table(judged: Iterable[Verdict]) -> ResultTable:
+    """The table of some verdicts."""
+    return make_table("verdict", "Claims about these conditions", [asdict(row) for row in judged], _NOTE)
 
 
 def verdicts(worlds: Iterable[WorldRecord], claims: Iterable[Claim | Order]) -> list[Verdict]:
     """A verdict for each condition and each claim about it, then for each pair of conditions and each claim about two.
 
-    A condition matches a claim if it has exactly the settings of the claim's condition, with any fidelity.
+    A condition matches a claim if it has exactly the settings of the claim's condition, with any fidelity. If a claim's
+    measure fails, the claim is undecided, and the reason is the error.
     Two conditions are compared if their fidelity is the same.
 
     Args:
@@ -101,13 +110,13 @@ def verdicts(worlds: Iterable[WorldRecord], claims: Iterable[Claim | Order]) -> 
     """
     groups, claim_list = by_condition(worlds), list(claims)
     single_verdicts = [
-        judge(claim, name, group)
+        _guarded(claim, name, partial(judge, claim, name, group))
         for name, group in groups.items()
         for claim in claim_list
         if isinstance(claim, Claim) and claim.condition.is_of(group[0])
     ]
     pair_verdicts = [
-        judge_order(order, first, second)
+        _guarded(order, _both(first, second), partial(judge_order, order, first, second))
         for order in claim_list
         if isinstance(order, Order)
         for first, second in product(groups.values(), repeat=2)
@@ -157,9 +166,9 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
     reason = CROSSES if name == UNDECIDED else ""
     if shortcomings := _shortcomings(fewest, *shortfalls):
         name, reason = UNDECIDED, shortcomings
-    condition = f"{first[0].condition} against {second[0].condition}"
     result = ClaimEstimate(value, low, high)
-    return _verdict(order, condition, name, result, math.nan, NO_SPREAD, sum(map(len, parts)), [reason, *remarks])
+    condition, worlds = _both(first, second), sum(map(len, parts))
+    return _verdict(order, condition, name, result, math.nan, NO_SPREAD, worlds, [reason, *remarks])
 
 
 def place(low: float, high: float, region_low: float, region_high: float) -> str:
@@ -196,6 +205,19 @@ def _judge_extinction(claim: Claim, condition: str, worlds: Sequence[WorldRecord
     p, against = _against_reported(claim, extinction.extinct, extinction.worlds, unknown)
     share_estimate = ClaimEstimate(extinction.share, extinction.low, extinction.high)
     return _verdict(claim, condition, name, share_estimate, p, against, extinction.worlds, reasons)
+
+
+def _both(first: Sequence[WorldRecord], second: Sequence[WorldRecord]) -> str:
+    return f"{first[0].condition} against {second[0].condition}"
+
+
+def _guarded(claim: Claim | Order, condition: str, rule: Callable[[], Verdict]) -> Verdict:
+    """The verdict of a rule; undecided, with the error as its reason, if the claim's measure fails."""
+    try:
+        return rule()
+    except Exception as error:  # a measure of another package may raise anything
+        reason = f"{FAILED}{failure(error)}"
+        return _verdict(claim, condition, UNDECIDED, ClaimEstimate(), math.nan, "", 0, [reason])
 
 
 def _shortcomings(worlds: int, *shortfalls: str) -> str:

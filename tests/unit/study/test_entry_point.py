@@ -86,7 +86,9 @@ def test_an_item_that_two_studies_have_is_told_with_its_study(install: Install) 
 
 FAILING = """
 from hedon.analysis.result import make_table
-from hedon.study import Item, Study
+from hedon.study import Claim, Condition, Item, Scale, Study
+
+SMALL = Condition("small", overrides=("population.initial_count=4", "population.capacity=8"))
 
 
 def fail(inputs):
@@ -98,21 +100,30 @@ def make(inputs):
     return [make_table("after", "Made all the same", [{"answer": 43}])]
 
 
-STUDY = Study("halves", "", "", (Item("failing", "Fails", "", fail), Item("working", "Works", "", make)))
+def divide(world):
+    return 1 / len(world.prey)
+
+
+CLAIM = Claim("prey", SMALL, "They eat.", divide, "mean", "none")
+ITEMS = (Item("failing", "Fails", "", fail), Item("working", "Works", "", make, (SMALL,), Scale((1,), 64)))
+STUDY = Study("halves", "", "", ITEMS, claims=(CLAIM,))
 """
 
 
-def test_an_item_that_fails_is_shown_with_its_error_and_the_others_are_written(
+def test_items_and_claims_that_fail_are_shown_with_their_errors_and_the_others_are_written(
     tmp_path: Path, install: Install
 ) -> None:
     install("halves", FAILING, "halves:STUDY")
-    answer = command("study", "report", "halves", cwd=tmp_path)
+    answer = command("study", "run", "halves", cwd=tmp_path)
     page = tmp_path / "studies" / "halves" / "study.html"
     assert answer.returncode == 2
-    assert re.search(r"failing: ValueError: no such bin \(line 8 of .*halves\.py\)", answer.stderr), answer.stderr
+    assert re.search(r"failing: ValueError: no such bin \(line 10 of .*halves\.py\)", answer.stderr), answer.stderr
+    failed = r"prey: its measure failed: ZeroDivisionError: division by zero \(line 18 of .*halves\.py\)"
+    assert re.search(failed, answer.stderr), answer.stderr
     assert f"everything else is in {Path('studies/halves/study.html')}" in answer.stderr
     assert "Traceback" not in answer.stderr
     results = json.loads(page.with_suffix(".json").read_text(encoding="utf-8"))
     assert [bool(item["failure"]) for item in results["items"]] == [True, False]
     assert [results["tables"][name]["rows"] for name in ("before", "after")] == [[{"answer": 42}], [{"answer": 43}]]
+    assert [row["verdict"] for row in results["tables"]["verdict"]["rows"]] == ["undecided"]
     assert "Failed: ValueError: no such bin" in page.read_text(encoding="utf-8")
