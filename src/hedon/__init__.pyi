@@ -15,6 +15,7 @@ from .experiment.memory import MemoryNeedError as MemoryNeedError
 from .experiment.plan import Moment as Moment
 from .experiment.plan import RunPlan as RunPlan
 from .experiment.resume import resume as resume
+from .experiment.rule import rules as rules
 from .experiment.run import run as run
 from .experiment.simulation import Simulation as Simulation
 from .experiment.world import World as World
