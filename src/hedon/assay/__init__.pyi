@@ -1,5 +1,6 @@
 from .contest import AtShare as AtShare
 from .contest import Lines as Lines
+from .contest import by_descent as by_descent
 from .contest import by_gene as by_gene
 from .contest import world_lines as world_lines
 from .frequency import Frequency as Frequency

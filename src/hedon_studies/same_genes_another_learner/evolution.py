@@ -28,6 +28,17 @@ from hedon.statistic import holm
 from hedon_studies.same_genes_another_learner.landscape import ACTION, FOOD, SIGHT
 from hedon_studies.same_genes_another_learner.named_test import named_test
 
+PRESET = "appetite"
+SEEN = "reward.pay.see_normal.coef=0.2"
+"""The setting that pays for the sight of food, in all parts."""
+EVOLVING = (
+    SEEN,
+    "reward.pay.see_normal.gene.initial_sd=1",
+    "food.normal.gene.initial_sd=1",
+    "hazard.alpha_age=7e-5",
+    "energy.basic_cost=0.001",
+    "food.normal.growth_rate=2",
+)
 ARMS = {"slow": 0.0003, "fast": 0.003}
 """The learning rate of each arm."""
 WORLDS, LIVING = "worlds.csv", "living.parquet"
@@ -64,11 +75,10 @@ def measure(world: WorldRecord) -> dict[str, Any]:
     }
 
 
-def world_row(world: WorldRecord, run: Run) -> dict[str, Any]:
-    """The row of `worlds.csv` that describes one world: its measures, and the revision, start and digests."""
+def provenance(world: WorldRecord, run: Run) -> dict[str, Any]:
+    """The revision, start and digests of a world, which end its row of `worlds.csv`."""
     manifest = run.manifest
     return {
-        **measure(world),
         "backend": manifest.sessions[-1].backend,
         "hedon_version": manifest.hedon_version,
         "git_revision": manifest.git_revision,
@@ -97,7 +107,7 @@ def reduce_runs(folders: Iterable[Path], out: Path) -> None:
     for folder in folders:
         run = open_run(folder)
         for world in read_worlds([run]):
-            rows.append(world_row(world, run))
+            rows.append(measure(world) | provenance(world, run))
             genes.append(living(world))
     out.mkdir(parents=True, exist_ok=True)
     pl.DataFrame(rows, infer_schema_length=None).sort("arm", "seed").write_csv(out / WORLDS)

@@ -17,21 +17,12 @@ from hedon.statistic import mean_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
 from hedon_studies.same_genes_another_learner import evolution, landscape
 from hedon_studies.same_genes_another_learner.answer import EVOLUTION, LANDSCAPE, answer_table
+from hedon_studies.same_genes_another_learner.evolution import EVOLVING, PRESET, SEEN
 from hedon_studies.same_genes_another_learner.landscape import ACTION, FOOD, SIGHT
 
 FOLDER = Path(__file__).parent
-PRESET = "appetite"
-SEEN = "reward.pay.see_normal.coef=0.2"
 RANGE = (-2.0, 2.0)
 """Bounds of the founders' genes in part A."""
-EVOLVING = (
-    SEEN,
-    "reward.pay.see_normal.gene.initial_sd=1",
-    "food.normal.gene.initial_sd=1",
-    "hazard.alpha_age=7e-5",
-    "energy.basic_cost=0.001",
-    "food.normal.growth_rate=2",
-)
 _LANDSCAPE = ("learner-landscape", "Does the direction of the fittest reward depend on the learner?")
 _EVOLUTION = ("learner-evolution", "Does evolution follow the landscapes?")
 LANDSCAPE_SCALE, EVOLUTION_SCALE = Scale(tuple(range(1001, 1031)), 20_480), Scale(tuple(range(1101, 1161)), 184_320)

@@ -1,0 +1,103 @@
+"""Parts C and D of the study of another learner: evolved genomes compete, and live with decoys."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+import hedon
+from hedon_studies.same_genes_another_learner import decoy, evolution, swap
+from hedon_studies.same_genes_another_learner.study import LEARNERS
+from hedon_studies.same_genes_another_learner.transplant import Part
+
+PAIR = 1101
+
+
+@pytest.fixture(scope="module")
+def evolved(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The tables of part B for one pair of short worlds."""
+    folder = tmp_path_factory.mktemp("evolved")
+    for arm, condition in LEARNERS.items():
+        hedon.run(hedon.RunPlan(condition.config("corrected"), [PAIR], 64, folder / arm))
+    evolution.reduce_runs([folder / arm for arm in LEARNERS], folder / "tables")
+    return folder / "tables"
+
+
+@pytest.mark.parametrize("part", [swap.PART, decoy.PART], ids=["swap", "decoy"])
+def test_worlds_of_evolved_genomes_are_run_and_reduced(
+    part: Part, evolved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    short = replace(part, steps=64)
+    short.main("", ["run", str(evolved), str(tmp_path / "runs")])
+    short.main("", ["run", str(evolved), str(tmp_path / "runs")])  # finds them all
+    short.main("", ["worlds", str(evolved), str(tmp_path / "runs"), str(tmp_path)])
+    worlds = pl.read_csv(tmp_path / "worlds.csv")
+    assert worlds["treatment"].to_list() == list(part.treatments)
+    assert set(worlds["pair"]) == {PAIR}
+    assert set(worlds["steps"]) == {64}
+    short.main("", ["tests", str(tmp_path)])
+    assert "primary: " in capsys.readouterr().out
+    other = pl.read_parquet(evolved / evolution.LIVING).with_columns(w_normal=pl.lit(0.0, pl.Float32))
+    other.write_parquet(evolved.parent / evolution.LIVING)
+    (evolved.parent / evolution.WORLDS).write_bytes((evolved / evolution.WORLDS).read_bytes())
+    with pytest.raises(ValueError, match=f"its founders are not those of pair {PAIR}"):
+        short.main("", ["worlds", str(evolved.parent), str(tmp_path / "runs"), str(tmp_path)])
+
+
+def test_both_sides_of_a_contest_start_with_half(evolved: Path) -> None:
+    living = pl.read_parquet(evolved / evolution.LIVING)
+    founders = swap.PART.treatments["slow"].founders(living, PAIR)
+    assert founders.groups(1, 500).count("slow") == 250
+    rates = living.group_by("learning_rate", maintain_order=True).agg(pl.col("w_normal").mean())
+    means = {group: founders.values[np.array(founders.group) == group, 0].mean() for group in ("slow", "fast")}
+    assert list(means.values()) == pytest.approx(rates["w_normal"].to_list(), abs=1e-5)
+
+
+def test_a_pair_with_an_extinct_world_is_left_out(evolved: Path, tmp_path: Path) -> None:
+    worlds = pl.read_csv(evolved / evolution.WORLDS)
+    worlds = worlds.with_columns(extinct_step=pl.when(pl.col("arm") == "fast").then(5).otherwise(None))
+    worlds.write_csv(tmp_path / evolution.WORLDS)
+    (tmp_path / evolution.LIVING).write_bytes((evolved / evolution.LIVING).read_bytes())
+    swap.PART.main("", ["run", str(tmp_path), str(tmp_path / "runs")])
+    assert not (tmp_path / "runs").exists()
+
+
+def contests(fast: float, slow: float, pairs: int = 60) -> pl.DataFrame:
+    """Rows of contests in which the fast-evolved end with these mean shares under each learner."""
+    rng = np.random.default_rng(1)
+    return pl.concat(
+        pl.DataFrame({"treatment": [name] * pairs, "pair": range(pairs), "share": mean + rng.normal(0, 0.1, pairs)})
+        for name, mean in (("fast", fast), ("slow", slow))
+    )
+
+
+def test_winning_at_home_is_told_from_winning_everywhere() -> None:
+    home = {row["test"]: row for row in swap.named_tests(contests(0.6, 0.4)).iter_rows(named=True)}
+    assert home["primary: share of the fast-evolved, fast less slow learner"]["low"] > 0
+    assert home["share of the fast-evolved less 1/2, fast learner"]["low"] > 0
+    assert home["share of the fast-evolved less 1/2, slow learner"]["high"] < 0
+    everywhere = swap.named_tests(contests(0.7, 0.7)).row(0, named=True)
+    assert everywhere["low"] < 0 < everywhere["high"]
+
+
+def decoyed(loss: dict[tuple[str, str], float], pairs: int = 30) -> pl.DataFrame:
+    """Rows of worlds in which decoys cost these shares of the intake, by genes and learner."""
+    rng = np.random.default_rng(2)
+    rows = []
+    for name in decoy.PART.treatments:
+        genes, learner, decoys = name.split("-")
+        intake = 0.003 * (1 - loss[genes, learner] * (decoys == "decoy")) * rng.normal(1, 0.02, pairs)
+        rows.append(pl.DataFrame({"treatment": [name] * pairs, "pair": range(pairs), "intake": intake}))
+    return pl.concat(rows)
+
+
+def test_a_loss_by_learners_is_told_from_a_loss_by_genes() -> None:
+    loss = {("slow", "slow"): 0.1, ("slow", "fast"): 0.3, ("fast", "slow"): 0.1, ("fast", "fast"): 0.3}
+    tests = decoy.named_tests(decoyed(loss))
+    learner, genes = tests.row(0, named=True), tests.row(1, named=True)
+    assert learner["effect"] == pytest.approx(0.2, abs=0.02)
+    assert learner["low"] > 0
+    assert genes["low"] < 0 < genes["high"]
+    assert tests["test"].len() == 6
