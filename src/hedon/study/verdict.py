@@ -167,8 +167,8 @@ def judge_order(order: Order, first: Sequence[WorldRecord], second: Sequence[Wor
     if shortcomings := _shortcomings(fewest, *shortfalls):
         name, reason = UNDECIDED, shortcomings
     result = ClaimEstimate(value, low, high)
-    condition, worlds = _both(first, second), sum(map(len, parts))
-    return _verdict(order, condition, name, result, math.nan, NO_SPREAD, worlds, [reason, *remarks])
+    condition, total = _both(first, second), sum(map(len, parts))
+    return _verdict(order, condition, name, result, math.nan, NO_SPREAD, total, [reason, *remarks])
 
 
 def place(low: float, high: float, region_low: float, region_high: float) -> str:
