@@ -1,7 +1,7 @@
 """Part B: which weights of sight and food evolve under a slow and a fast learner, from the same founders.
 
 `python -m hedon_studies.same_genes_another_learner.evolution worlds RUN… --out FOLDER` reduces runs to two tables:
-`worlds.csv`, a row per world, and `living.parquet`, the genes of the agents alive at the end.
+`worlds.csv`, a row per world, and `living.parquet`, the weights of the agents alive at the end.
 `python -m hedon_studies.same_genes_another_learner.evolution tests FOLDER` prints the tests named in expected.md.
 """
 
@@ -89,10 +89,10 @@ def provenance(world: WorldRecord, run: Run) -> dict[str, Any]:
 
 
 def living(world: WorldRecord) -> pl.DataFrame:
-    """The rows of `living.parquet` for one world: the genes of the agents alive at the end."""
-    genes = last_living(world.agents, world.population).select(pl.col(world.weight_names).cast(pl.Float32))
+    """The rows of `living.parquet` for one world: the weights of the agents alive at the end, without neutral genes."""
+    weights = last_living(world.agents, world.population).select(pl.col(world.reward_names).cast(pl.Float32))
     rate = pl.lit(world.species_config.learning.learning_rate).alias("learning_rate")
-    return genes.select(rate, pl.lit(world.seed, pl.Int32).alias("seed"), pl.all())
+    return weights.select(rate, pl.lit(world.seed, pl.Int32).alias("seed"), pl.all())
 
 
 def reduce_runs(folders: Iterable[Path], out: Path) -> None:
