@@ -134,7 +134,7 @@ def named_tests(rows: pl.DataFrame) -> pl.DataFrame:
     late = rows.filter(pl.col("step") > pl.col("step").max() - LATE)
     means = late.group_by("learner", "measure", "seed").agg(pl.col(SIGHT, FOOD, "mean").mean()).sort("seed")
 
-    def change(measure: str, column: str) -> Floats:
+    def change(measure: str, column: str) -> NDArray[np.float64]:
         worlds = means.filter(pl.col("measure") == measure)
         after, before = (worlds.filter(pl.col("learner") == learner) for learner in ("fast", "baseline"))
         paired = before.join(after, on="seed", suffix="_after").sort("seed")
