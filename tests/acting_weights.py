@@ -1,10 +1,10 @@
-"""The weights that agents act with, made from their parameters by NumPy, bit by bit."""
+"""The weights that agents act with, derived from their parameters in NumPy with identical bits."""
 
 import numpy as np
 
 HIDDEN = 64
 AFTER_W2 = HIDDEN + 3 * HIDDEN + 16
-"""Floats of a network behind its two matrices: second bias, heads, and their biases with the log-sd."""
+"""Floats of a network after its two matrices: second bias, heads, and their biases with the log-sd."""
 
 
 def to_bfloat16(x: np.ndarray) -> np.ndarray:
@@ -14,8 +14,10 @@ def to_bfloat16(x: np.ndarray) -> np.ndarray:
 
 
 def pair(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Of all float32 of the sign of `first` whose lower bits are `second` in bfloat16 the one with the fewest float32
-    between it and `first`; of two such the larger."""
+    """The float32 nearest to `first` among those with its sign whose lower bits are `second` in bfloat16.
+
+    The distance is the number of float32 values in between; ties go to the larger magnitude.
+    """
     lower, size = to_bfloat16(second).astype(np.int64), np.abs(first).view(np.uint32).astype(np.int64)
     upper = np.stack([(size >> 16) + 1, size >> 16, (size >> 16) - 1])
     candidates = np.where(upper < 0, 2**40, upper << 16 | lower)
@@ -24,17 +26,17 @@ def pair(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def unpair(words: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Both weights of each pair as they are read."""
+    """Both weights of each pair, as agents read them."""
     return words, (words.view(np.uint32) << 16).view(np.float32)
 
 
 def as_read(params: np.ndarray) -> np.ndarray:
-    """Parameters of networks (..., size) with the two matrices as agents read them that act with bfloat16."""
+    """Parameters of networks (..., size), with the two matrices as read by agents that act with bfloat16."""
     read = params.copy()
     count = params.shape[-1] - AFTER_W2
     blocks = read[..., :count].reshape(*params.shape[:-1], -1, 2, 16)
     blocks[..., 0, :], blocks[..., 1, :] = unpair(pair(blocks[..., 0, :].copy(), blocks[..., 1, :].copy()))
     read[..., :count] = blocks.reshape(*params.shape[:-1], count)
     b1 = slice(count - HIDDEN * (HIDDEN + 1), count - HIDDEN * HIDDEN)
-    read[..., b1] = params[..., b1]  # enters by the folded bias, as it is
+    read[..., b1] = params[..., b1]  # enters unchanged, through the folded bias
     return read

@@ -1,4 +1,4 @@
-"""Random pedigrees, and the plain way to climb them."""
+"""Random pedigrees, and a simple way to trace ancestors in them."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from hedon.analysis.descent.genealogy import ALIVE, Genealogy
 
 
 def random_tree(rng: np.random.Generator, count: int, founders: int) -> Genealogy:
-    """Each agent has a random earlier one as its parent; one in five lives."""
+    """Each agent has a random earlier agent as its parent; one in five is alive."""
     parent = np.array([-1 if i < founders else rng.integers(max(0, i - 30), i) for i in range(count)])
     birth = np.where(parent < 0, 0, np.arange(count))
     return Genealogy(parent, birth, np.where(rng.random(count) < 0.2, ALIVE, birth + 40), 0)

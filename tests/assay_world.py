@@ -1,4 +1,4 @@
-"""Worlds of which the fitness of each genome is known: tables of agents from birth and death processes."""
+"""Worlds in which the fitness of each genome is known: tables of agents from birth–death processes."""
 
 from collections.abc import Callable
 from heapq import heappop, heappush
@@ -20,22 +20,23 @@ def birth_death_world(
     death: float = 1e-3,
     steps: int = 2000,
 ) -> pl.DataFrame:
-    """A table of agents of a world without mutation: each agent has children and dies at constant chances.
+    """The agents of a world without mutation, in which birth and death have constant probabilities.
 
-    A founder expects exp((birth − death) · steps) living descendants, its offspring birth / death of a full life.
+    The expected number of living descendants of a founder is exp((birth − death) · steps); that of children in a full
+    life is birth / death.
 
     Args:
-        genes: of the founders, by column.
-        birth: chance of a birth per step for each founder's genes.
-        rng: source of chance.
-        world: its index.
-        death: chance of death per step.
-        steps: length of the run.
+        genes: Genes of the founders, by column.
+        birth: Probability of a birth per step, given the founders' genes.
+        rng: Random number generator.
+        world: Index of the world.
+        death: Probability of death per step.
+        steps: Length of the run.
     """
     rates = birth(genes)
     rows: list[tuple[int, int, int, int, int | None, int]] = []  # id, parent, founder, birth, death, generation
     children: dict[int, int] = {}
-    number = count()  # of who are born at one step, those that were said first
+    number = count()  # breaks ties between births in the same step: whichever was queued first
     waiting = [(0, next(number), -1, i, 0) for i in range(len(rates))]
     while waiting:
         born, _, parent, line, generation = heappop(waiting)

@@ -1,7 +1,7 @@
-"""The command line within the tests' own process: the same way in as the installed command, without its start.
+"""Runs the command line inside the test process: the entry point of the installed command, without a new process.
 
-What is about the process itself (signals, limits, its environment, its exit) starts one; what is about words, files and
-numbers has no need to: imports alone cost a second or two each time.
+Tests of the process itself (signals, limits, environment, exit) start a real one. Tests of messages, files and numbers
+need not: imports alone would cost a second or two each time.
 """
 
 import os
@@ -16,7 +16,7 @@ from hedon.cli.start import main
 
 
 class Captured(TextIOWrapper):
-    """A stream whose text stays readable; the command line leaves streams alone that are not the process's own."""
+    """A stream whose text stays readable; the command line does not touch streams other than those of the process."""
 
     def __init__(self) -> None:
         self.kept = BytesIO()
@@ -28,7 +28,7 @@ class Captured(TextIOWrapper):
 
 
 def hedon(*arguments: object, cwd: Path | str = ".", **environment: str) -> "CompletedProcess[str]":
-    """What `hedon ARGUMENTS` answers in a folder, with variables of the environment set."""
+    """Runs `hedon ARGUMENTS` in a folder, with environment variables set, and returns its exit code and output."""
     words = ["hedon", *map(str, arguments)]
     out, err = Captured(), Captured()
     code: object = 0

@@ -1,4 +1,4 @@
-"""What all tests share: a config file to write, and how workers share the processors and end together."""
+"""Shared by all tests: a fixture that writes a config file, and a test order that keeps all workers busy."""
 
 import os
 from collections.abc import Callable
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-# Threads of NumPy's library spin while they wait for one another, on processors that another worker could use.
+# The threads of NumPy's BLAS spin while they wait for one another, on processors that other workers could use.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 TESTS = Path(__file__).parent
@@ -44,7 +44,7 @@ LONGEST = (
     "test_lock.py",
     "test_page.py",
 )
-"""Files of more than some ten seconds of a processor, the longest first."""
+"""Files that take more than about ten seconds of processor time, longest first."""
 
 
 MORE = (
@@ -97,10 +97,10 @@ MORE = (
     "view/",
 )
 """Files and folders that only `make test-more` runs, except for their tests marked `smoke`: browsers, emulated devices,
-processes that are killed, whole reports and sites."""
+killed processes, complete reports and sites."""
 
 SHARES = {"test_calibration.py": 4, "test_reference_model.py": 7}
-"""Files of which `make test` runs one case of so many, and `make test-more` the others."""
+"""Files in which `make test` runs one case out of this many; `make test-more` runs the others."""
 
 THINNED = {
     "test_a_copy_goes_on_alone": 4,
@@ -121,12 +121,12 @@ THINNED = {
     "test_unit_defines_only_its_table": 2,
     "test_values_that_no_run_has_end_no_command_in_a_traceback": 2,
 }
-"""Tests of which `make test-more` runs one case of so many, and `make test-long` the others."""
+"""Tests of which `make test-more` runs one case out of this many; `make test-long` runs the others."""
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks the tests of `make test-more`; long files come first, so that workers finish together."""
+    """Marks tests for `make test-more` and `make test-long`; sorts long files first so that workers finish together."""
     seen = dict.fromkeys((*SHARES, *THINNED), 0)
     for item in items:
         name = getattr(item, "originalname", item.name)
@@ -146,7 +146,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture
 def write(tmp_path: Path) -> Callable[[str], Path]:
-    """Writes a config file and gives its path."""
+    """Writes a config file and returns its path."""
 
     def write(text: str) -> Path:
         path = tmp_path / "my.toml"

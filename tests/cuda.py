@@ -1,9 +1,9 @@
-"""Compiles the CUDA part, and compares the compiler's report on each kernel, and the cost of its machine code, with the
+"""Compiles the CUDA code and compares the compiler's report on each kernel, and the cost of its machine code, with the
 committed tables.
 
-`python tests/cuda.py [--write]`, with the compiler of the package `nvidia-cuda-nvcc`; with `--variants`, every variant
-of the kernels instead of the one in the library. It neither needs nor uses a device. Code is compiled again only if the
-engine's sources or the compiler changed, which takes two minutes for each variant.
+Usage: `python tests/cuda.py [--write]`, with the compiler from the package `nvidia-cuda-nvcc`. `--variants` checks all
+kernel variants instead of the one in the library. No device is needed or used. Code is recompiled only if the engine's
+sources or the compiler have changed, which takes two minutes per variant.
 """
 
 import hashlib
@@ -26,9 +26,9 @@ TABLE = ROOT / "tests" / "data" / "cuda_kernels.json"
 COSTS = ROOT / "tests" / "data" / "cuda_cost.json"
 VARIANTS = ROOT / "tests" / "data" / "cuda_variants.json"
 COST_SLACK = 0.15
-# Of one multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, technical specifications.
+# Limits of one multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, technical specifications.
 REGISTERS, RESIDENT_THREADS, SHARED_BYTES, SHARED_RESERVED = 65536, 2048, 228 * 1024, 1024
-SLACK = 8  # registers: another version of the compiler may take a few more or fewer
+SLACK = 8  # registers: another version of the compiler may use a few more or fewer
 LAUNCH = """
 #include "cuda/block.h"
 #include "cuda/learning_layout.h"
@@ -39,13 +39,13 @@ int main() {
   printf("%d %d %d", BLOCK_THREADS, step * 4, learning_layout(params_of(95)).total * 4);
 }
 """
-"""Prints the threads of a block, and the bytes of shared memory that a launch asks for: `StepWorlds::FLOATS`, and an
-update of 95 inputs."""
+"""Prints the threads per block and the bytes of shared memory that each launch requests: for `StepWorlds::FLOATS`, and
+for an update with 95 inputs."""
 Launch = tuple[int, dict[str, int]]
 
 
 def launch_sizes(variant: str, folder: Path) -> Launch:
-    """Threads of a block, and bytes of shared memory by kernel."""
+    """Threads per block, and bytes of shared memory by kernel."""
     program = folder / "launch"
     compiler = os.environ.get("CXX") or "c++"
     options = ["-std=c++20", build.variant_option(variant), f"-I{ROOT / 'engine'}", "-x", "c++", "-", "-o"]
@@ -56,13 +56,13 @@ def launch_sizes(variant: str, folder: Path) -> Launch:
 
 
 def resident_blocks(registers: int, shared: int, threads: int) -> int:
-    """Blocks of a kernel that one multiprocessor holds at a time; registers are given in steps of 8 a thread."""
+    """Blocks of a kernel resident on one multiprocessor; registers are allocated in multiples of 8 per thread."""
     by_registers = REGISTERS // (-(-registers // 8) * 8 * threads)
     return min(by_registers, RESIDENT_THREADS // threads, SHARED_BYTES // (shared + SHARED_RESERVED))
 
 
 def read_kernels(report: str, launch: Launch) -> dict[str, dict[str, int]]:
-    """What `ptxas -v` says of each kernel, by the name of its functor."""
+    """The figures that `ptxas -v` reports for each kernel, by the name of its functor."""
     threads, shared_bytes = launch
     kernels = {}
     pattern = (
@@ -82,7 +82,7 @@ def read_kernels(report: str, launch: Launch) -> dict[str, dict[str, int]]:
 
 
 def problems(found: dict[str, dict[str, int]], kept: dict[str, dict[str, int]]) -> list[str]:
-    """Where the kernels differ from the table."""
+    """Differences between the kernels and the table."""
     out = [f"{name}: it is in the table alone, or in the source alone" for name in sorted(found.keys() ^ kept.keys())]
     for name in sorted(found.keys() & kept.keys()):
         now, then = found[name], kept[name]
@@ -94,7 +94,7 @@ def problems(found: dict[str, dict[str, int]], kept: dict[str, dict[str, int]]) 
 
 
 def costs_of(nvcc: Path, binary: Path) -> dict[str, dict[str, float]]:
-    """What the phases of an update cost, from the machine code."""
+    """Costs of the phases of an update, counted in the machine code."""
     disassembler = nvcc.with_name("nvdisasm")
     listing = subprocess.run(
         [str(disassembler), "--print-line-info-inline", str(binary)], capture_output=True, text=True, check=True
@@ -103,7 +103,7 @@ def costs_of(nvcc: Path, binary: Path) -> dict[str, dict[str, float]]:
 
 
 def dearer(found: dict[str, dict[str, float]], kept: dict[str, dict[str, float]]) -> list[str]:
-    """Phases of an update that are not in the table, or cost other than it says."""
+    """Phases of an update that only the code or only the table has, or whose costs differ."""
     out = [f"{name}: it is in one of code and table alone" for name in sorted(found.keys() ^ kept.keys())]
     for name in sorted(found.keys() & kept.keys()):
         now, then = found[name]["clocks"], kept[name]["clocks"]
@@ -116,10 +116,10 @@ def dearer(found: dict[str, dict[str, float]], kept: dict[str, dict[str, float]]
 
 
 def compile_kernels(nvcc: Path, variant: str) -> Path:
-    """A folder with the machine code of all kernels, `device.cubin`, and what the compiler says of them, `report.txt`.
+    """A folder with the machine code of all kernels, `device.cubin`, and the compiler's output, `report.txt`.
 
     Raises:
-        build.BuildError: It fails, or warns.
+        build.BuildError: The compiler fails or gives a warning.
     """
     source = ROOT / "engine" / "cuda" / "device.cu"
     options = build.command(
@@ -140,12 +140,12 @@ def compile_kernels(nvcc: Path, variant: str) -> Path:
         )
         if done.returncode != 0:
             raise build.BuildError(done.stderr)
-        report.write_text(done.stderr)  # last: with it, the folder is complete
+        report.write_text(done.stderr)  # written last: marks the folder as complete
     return kept
 
 
 def check_default(nvcc: Path, write: bool) -> list[str]:
-    """Compiles the kernels of the library; returns where they differ from the tables, or writes these."""
+    """Compiles the library's kernels and returns how they differ from the tables, after updating these if asked to."""
     default = build.variants()[0]
     folder = compile_kernels(nvcc, default)
     found = read_kernels((folder / "report.txt").read_text(), launch_sizes(default, folder))

@@ -1,10 +1,10 @@
-"""What an update costs a multiprocessor, counted from its machine code; `python tests/cuda.py` keeps a table of it.
+"""The cost of an update on one multiprocessor, counted in its machine code; `python tests/cuda.py` keeps it in a table.
 
-`nvdisasm` names for each instruction the chain of source lines that it comes from, so it belongs to one phase of a
-block of 64 samples. Of each phase, one inner loop is taken: the one with the most multiply-adds, or of the first layer
-the one over rays, which reads their types. Of this loop, the instructions and the bytes of shared memory for each
-multiply-add are counted, both sides of a branch, and each lane's bytes even where lanes read the same ones: so the
-clocks are too many rather than too few, as far as these loops go. How many multiply-adds a phase has follows from the
+`nvdisasm` gives the chain of source lines behind each instruction, which assigns it to one phase of a block of 64
+samples. Each phase is represented by one inner loop: the one with the most multiply-adds or, in the first layer, the
+loop over rays, which reads their types. In this loop we count the instructions and the bytes of shared memory per
+multiply-add. Both sides of a branch count, and so do each lane's bytes even if lanes read the same ones, so for these
+loops the clocks are overestimated rather than underestimated. The number of multiply-adds in a phase follows from the
 sizes of the network.
 """
 
@@ -14,11 +14,11 @@ from pathlib import Path
 
 SAMPLES = HIDDEN = 64
 RAYS, DENSE = 24, 6
-"""Of the baseline: entries of an observation that are not 0, for each of which a row of the first layer is read."""
+"""Nonzero entries of an observation in the baseline; for each, one row of the first layer is read."""
 LANES = 32
 ISSUED_PER_CLOCK = 4
 SHARED_BYTES_PER_CLOCK = 128
-"""Of one multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, arithmetic instructions."""
+"""Rates of a multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, arithmetic instructions."""
 MULTIPLY_ADDS = {
     "first_layer": SAMPLES * HIDDEN * (RAYS + DENSE),
     "second_layer": SAMPLES * HIDDEN * HIDDEN,
@@ -26,7 +26,7 @@ MULTIPLY_ADDS = {
     "hidden_backward": SAMPLES * HIDDEN * HIDDEN,
     "first_layer_backward": SAMPLES * HIDDEN * (RAYS + DENSE),
 }
-"""Of one block of 64 samples, by phase: functions of `engine/cuda/forward.h` and `backward.h`."""
+"""Multiply-adds per block of 64 samples, by phase: functions in `engine/cuda/forward.h` and `backward.h`."""
 READS_TYPES = ("first_layer", "first_layer_backward")
 TYPE_READ = "LDG.E.U8"
 LINE = re.compile(r'"([^"]+)", line (\d+)')
@@ -39,8 +39,8 @@ class Code:
     """One kernel: its instructions, in order.
 
     Attributes:
-        name: Operation of each, with its modifiers.
-        phase: Phase of each; empty outside of all.
+        name: Operation of each instruction, with its modifiers.
+        phase: Phase of each instruction; empty outside all phases.
         loops: First and last instruction of each loop.
     """
 
@@ -56,7 +56,7 @@ def phase_lines(source: Path) -> dict[int, str]:
 
 
 def read_code(listing: str, kernel: str, source: Path) -> Code:
-    """A kernel of what `nvdisasm --print-line-info-inline` prints."""
+    """Extracts a kernel from the output of `nvdisasm --print-line-info-inline`."""
     start = re.search(rf"^\.text\.\w*{kernel}EEEvT_:$", listing, re.MULTILINE)
     if start is None:
         raise ValueError(f"no kernel {kernel} in the listing")
@@ -92,8 +92,8 @@ def shared_bytes(name: str) -> int:
 
 
 def count_costs(code: Code) -> dict[str, dict[str, float]]:
-    """Of each phase: instructions and bytes of shared memory per multiply-add of its inner loop, and the clocks that a
-    multiprocessor needs for a block of samples if nothing waits."""
+    """For each phase, instructions and bytes of shared memory per multiply-add in its inner loop, and the clocks that a
+    multiprocessor needs for a block of samples without stalls."""
     costs = {}
     for phase, multiply_adds in MULTIPLY_ADDS.items():
         body = inner_loop(code, phase)
@@ -110,10 +110,10 @@ def count_costs(code: Code) -> dict[str, dict[str, float]]:
 
 
 def inner_loop(code: Code, phase: str) -> list[str]:
-    """The operations of the loop of a phase that takes the time.
+    """The operations in the loop that dominates the time of a phase.
 
     Raises:
-        ValueError: There is none.
+        ValueError: The phase has no such loop.
     """
     places = [i for i, each in enumerate(code.phase) if each == phase]
     inside = [loop for loop in code.loops if places and places[0] <= loop[0] and loop[1] <= places[-1] + 1]

@@ -1,4 +1,4 @@
-"""The kernels of CUDA on the processor: builds the library of the emulation, and names it to hedon."""
+"""The CUDA kernels emulated on the processor: builds the emulation library and points hedon to it."""
 
 import fcntl
 import hashlib
@@ -21,9 +21,9 @@ from hedon.experiment.device import EMULATED, EMULATION_VARIABLE
 SOURCES = ("engine/cuda/emulation.cpp", "engine/cuda/emulator.cpp")
 OPTIONS = (
     "-std=c++20",
-    "-O1",  # takes 16 s to build instead of 26 with -O2, and tests a fifth longer to run
+    "-O1",  # builds in 16 s instead of 26 with -O2; tests run a fifth longer
     "-mavx2",
-    "-mfma",  # so that a fused multiply-add is one instruction
+    "-mfma",  # makes a fused multiply-add one instruction
     "-ffp-contract=off",
     "-fno-math-errno",
     "-fvisibility=hidden",
@@ -34,20 +34,20 @@ OPTIONS = (
     "-shared",
 )
 THREADS = 64
-"""Threads of an emulated block: few, since each barrier goes through all of them. A device has 512."""
+"""Threads of an emulated block: few, since each barrier visits all of them. A device has 512."""
 
 
 VARIANTS = library_build.variants()
-"""Names of the variants of the kernels; the default first."""
+"""Names of the kernel variants, the default first."""
 
 
 def build(threads: int = THREADS, *, system_threads: bool = False, variant: str = VARIANTS[0]) -> Path:
-    """The library; built again only if a source has changed.
+    """The library, rebuilt only if a source has changed.
 
     Args:
-        threads: Of a block.
-        system_threads: They are threads of the system, which run at the same time, and not fibers in turn.
-        variant: Of the kernels.
+        threads: Threads per block.
+        system_threads: Use system threads, which run in parallel, instead of fibers, which take turns.
+        variant: Variant of the kernels.
     """
     options = [*OPTIONS, f"-DHEDON_BLOCK_THREADS={threads}", library_build.variant_option(variant)]
     if system_threads:
@@ -58,7 +58,7 @@ def build(threads: int = THREADS, *, system_threads: bool = False, variant: str 
     library = ROOT / "build" / f"cuda-emulated-{content.hexdigest()[:16]}.so"
     library.parent.mkdir(exist_ok=True)
     with library.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # another worker of the tests may be at it
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another test worker may be building it
         if not library.exists():
             part = library.with_suffix(f".{os.getpid()}")
             command = ["c++", *options, f"-I{ROOT / 'engine'}", *(str(ROOT / source) for source in SOURCES)]
@@ -70,7 +70,7 @@ def build(threads: int = THREADS, *, system_threads: bool = False, variant: str 
 def emulate(monkeypatch: pytest.MonkeyPatch, *arguments: Any, **options: Any) -> str:
     """The name of the emulated device, ready for `Simulation(backend=…)`; the test is skipped without AVX2.
 
-    Arguments and options are those of `build`.
+    Takes the same arguments and options as `build`.
     """
     if platform.machine() != "x86_64":
         pytest.skip("the emulation is compiled for AVX2, and compared with it")

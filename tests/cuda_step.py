@@ -1,9 +1,9 @@
 """Counts the memory accesses on the longest path of a step through a block: `python tests/cuda_step.py [--write]`.
 
-No device is needed: `native/step_accesses.cpp` counts in the emulation, with as many threads as on a device. A device's
-thread waits for most of its accesses, so their number, multiplied by the time of an access, is the least time that a
-step takes, and it shows which part to shorten first. Two numbers are kept: all accesses, and those of global memory,
-which take longer than those of shared memory.
+No device is needed: `native/step_accesses.cpp` counts in the emulation, with as many threads as on a device. Threads on
+a device wait for most of their accesses, so the number of accesses times their duration is a lower bound on the time of
+a step, and shows which part to shorten first. Two numbers are kept: all accesses, and accesses to global memory, which
+take longer than accesses to shared memory.
 """
 
 import json
@@ -19,12 +19,12 @@ from hedon.view.engine_text import engine_text
 
 TABLE = ROOT / "tests" / "data" / "cuda_step.json"
 VARIANTS = ("shared_moments", "shared_bodies", "half_blocks")
-"""Variants of the kernels that step in different ways."""
+"""Kernel variants that step in different ways."""
 WARM_STEPS, STEPS = 4096, 64
 SLACK = 0.15
-"""Another compiler keeps other numbers in registers."""
+"""Other compilers keep other values in registers."""
 ALONE = 0.1
-"""Of the accesses of the thread with the most, if no other thread has so many, that thread works alone."""
+"""A thread counts as working alone if no other makes at least this share of its accesses."""
 
 PHASES = {
     "cuda/sense.h": "sense_and_act",
@@ -34,9 +34,9 @@ PHASES = {
     "world/": "rules",
     "cuda/window.h": "",  # the beginning of a run
 }
-"""Where the work before a barrier belongs: by the innermost of these sources around it."""
+"""Phase of the work before a barrier, by the innermost of these sources around it."""
 SHARES = {"rules": ("rules_of_all_threads", "rules_of_one_thread")}
-"""Phases that are told apart by whether one thread was alone."""
+"""Phases that are split by whether one thread worked alone."""
 
 
 def build() -> dict[str, Path]:
@@ -53,8 +53,8 @@ def build() -> dict[str, Path]:
 
 
 def phase_of(program: Path, address: str) -> str:
-    """The phase that a place of the code belongs to."""
-    call = hex(int(address, 16) - 1)  # it returns to the address, which may belong to what comes after
+    """The phase that a code address belongs to."""
+    call = hex(int(address, 16) - 1)  # the address is where the call returns to, which may be in the next phase
     command = ["addr2line", "-i", "-e", str(program), call]
     places = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     for place in places.splitlines():
@@ -65,7 +65,7 @@ def phase_of(program: Path, address: str) -> str:
 
 
 def count(program: Path, preset: str) -> dict[str, list[int]]:
-    """Accesses on the longest path of a step by phase: all accesses, and accesses of global memory."""
+    """Accesses on the longest path of a step, by phase: all accesses, and accesses to global memory."""
     with tempfile.TemporaryDirectory() as folder:
         world = Path(folder) / "world.txt"
         world.write_text(engine_text(load_config(preset), 1))
@@ -84,7 +84,7 @@ def count(program: Path, preset: str) -> dict[str, list[int]]:
 
 
 def problems(variant: str, found: dict[str, list[int]], kept: dict[str, list[int]]) -> list[str]:
-    """Where the way is another one than the table says."""
+    """Phases whose longest path differs from the table."""
     return [
         f"{variant}, {phase}: {found[phase]} accesses a step, and the table has {kept[phase]}: call "
         "`python tests/cuda_step.py --write` if that is right"

@@ -1,9 +1,9 @@
-"""Windows of the emulated CUDA kernels under a sanitizer: `native/cuda_windows.cpp`, as `sanitize.py` runs it.
+"""Windows of the emulated CUDA kernels under a sanitizer: `native/cuda_windows.cpp`, as run by `sanitize.py`.
 
-In the thread sanitizer's build, every thread of a block is a thread of the system. So it sees what a device might do:
-two threads that use the same number with no barrier between them, and the same of the teams of the processor's threads,
-with which the kernels are compared. In the other build, a block has a device's 512
-threads, and the address sanitizer knows each one's stack.
+In the thread sanitizer's build, every thread of a block is a system thread. The sanitizer therefore detects races that
+could occur on a device: two threads that access the same value without a barrier in between. It checks the processor's
+thread teams, with which the kernels are compared, in the same way. In the other build, a block has 512 threads, as on a
+device, and the address sanitizer knows each thread's stack.
 """
 
 import os
@@ -32,7 +32,7 @@ WORLDS = {
     "predators": ("predator", (*SHORT, *BOTH, "arena.width=300", "arena.height=300")),
     "obstacles": ("small", (*FEW, "obstacle.count=8", "obstacle.damage=0.5", 'sensor.smells=["*"]', "sensor.noses=2")),
     "crowd": ("small", (*FEW, 'physics.solver="jacobi"', "arena.width=120", "arena.height=120")),
-    # Bodies that leave their lists of neighbors within a step, so that it is tried again.
+    # Bodies that outrun their neighbor lists within a step, which is then retried.
     "fast": ("baseline", (*FEW, "physics.neighbor_skin=0.5", "physics.max_speed=30", "motor.max_force=300")),
     "pairs": (
         "baseline",
@@ -43,17 +43,17 @@ WORLDS = {
         (*FEW, "birth.kappa=0.5", "genome.set.body.radius={}", "genome.mutation.g_body_radius.limit=0.2"),
     ),
 }
-"""Presets and overrides of the worlds that run."""
+"""Presets and overrides of the worlds to run."""
 BARRIERS = 12
 FOUND = {"--without": ("block", 9), "--without-tile": ("tile", 4)}
-"""Of the first 12 barriers of every block, and of every tile, as many must be reported if they are left out; the others
-may part phases that share nothing in so small a world."""
+"""Of the first 12 barriers of each block and each tile, this many must be reported when left out; the others may
+separate phases that share nothing in such a small world."""
 PATIENCE_SECONDS = 20
-"""A barrier that is left out can also let threads go separate ways, and wait for ever."""
+"""Without a barrier, threads may also diverge and wait forever."""
 
 
 def build(preset: str) -> Path:
-    """The program, built with a preset of CMakePresets.json."""
+    """The program, built with a preset from CMakePresets.json."""
     configure = ["cmake", "--preset", preset, f"-DPython_EXECUTABLE={sys.executable}"]
     subprocess.run(configure, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     folder = ROOT / "build" / preset
@@ -62,7 +62,7 @@ def build(preset: str) -> Path:
 
 
 def write_worlds(folder: Path) -> list[str]:
-    """Writes the worlds' texts; returns the files, the tiny one first."""
+    """Writes the worlds as text files; returns their paths, the tiny one first."""
     worlds = {"tiny": ("baseline", TINY_FEW), **WORLDS}
     for name, (preset, overrides) in worlds.items():
         (folder / f"{name}.txt").write_text(engine_text(load_config(preset, overrides=overrides), 1))
@@ -70,7 +70,7 @@ def write_worlds(folder: Path) -> list[str]:
 
 
 def finds(program: Path, world: str, without: str, barrier: int, environment: dict[str, str]) -> bool:
-    """Whether the thread sanitizer reports that a barrier is missing, a bit differs, or the program never ends."""
+    """Whether omitting a barrier is noticed: the thread sanitizer reports it, a bit differs or the program hangs."""
     command = [str(program), without, str(barrier), "5", world]
     try:
         done = subprocess.run(command, env=environment, timeout=PATIENCE_SECONDS, capture_output=True, check=False)
@@ -80,7 +80,7 @@ def finds(program: Path, world: str, without: str, barrier: int, environment: di
 
 
 def run_windows(preset: str, options: dict[str, str], folder: Path) -> int:
-    """Builds and runs; returns an exit status."""
+    """Builds and runs the program; returns an exit status."""
     if platform.machine() != "x86_64":
         print("cuda_windows: nothing run, since the kernels are compared with AVX2")
         return 0

@@ -1,11 +1,11 @@
-"""All there is to see on a CUDA device, in under ten minutes, into one JSON: `python3 tests/device.py [--out FILE]`.
+"""Runs all checks of a CUDA device in under ten minutes, into one JSON: `python3 tests/device.py [--out FILE]`.
 
-It needs a device with its driver, nvcc (of CUDA, or of the package `nvidia-cuda-nvcc`) and a C++ compiler, and of
-Python the standard library alone. It builds a native program (`native/device_trial.cpp`), compares bits with the
-processor's, looks for wrong addresses and races with compute-sanitizer if that is there, and takes times. Where this
-Python has hedon, it also builds its library, interrupts a run and resumes it on the processor. `--variants` instead
-compares the bits and times of all variants of the kernels. `--emulate` does the same on the emulated device, to try
-this script. Exit status: 0 all is well, 1 something is not, 2 there is no device.
+It needs a device with its driver, nvcc (from CUDA or the package `nvidia-cuda-nvcc`), a C++ compiler, and Python with
+only its standard library. It builds a native program (`native/device_trial.cpp`), compares its bits with the
+processor's, looks for invalid addresses and races with compute-sanitizer if installed, and measures times. If this
+Python has hedon, it also builds hedon's library, interrupts a run and resumes it on the processor. `--variants` instead
+compares the bits and times of all kernel variants. `--emulate` uses the emulated device instead, to try out this
+script. Exit status: 0 if all checks pass, 1 if one fails, 2 without a device.
 """
 
 import argparse
@@ -30,17 +30,17 @@ SANITIZERS = ("memcheck", "racecheck", "synccheck", "initcheck")
 
 
 def build_default(emulated: bool) -> Path:
-    """The native program with the kernels that the library has.
+    """The native program with the library's kernels.
 
     Raises:
-        BuildError: A compiler is missing, or fails.
+        BuildError: A compiler is missing or fails.
     """
     default = build.variants()[0]
     return build_programs(emulated, [default])[default]
 
 
 def has_device() -> bool:
-    """Whether CUDA's driver is there and knows a device."""
+    """Whether the CUDA driver is installed and finds a device."""
     try:
         driver = ctypes.CDLL("libcuda.so.1")
     except OSError:
@@ -50,7 +50,7 @@ def has_device() -> bool:
 
 
 def compute_sanitizer() -> str | None:
-    """NVIDIA's checker of kernels: of PATH, of CUDA, or of the package `nvidia-cuda-sanitizer-api`."""
+    """NVIDIA's kernel checker, from PATH, CUDA or the package `nvidia-cuda-sanitizer-api`."""
     places = Path(sysconfig.get_path("purelib")) / "nvidia"
     found = [shutil.which("compute-sanitizer"), *map(str, places.rglob("compute-sanitizer"))]
     return next(
@@ -71,13 +71,13 @@ def sanitized(trial: Trial, program: str, folder: Path) -> dict[str, Any]:
 
 
 def free_bytes(trial: Trial) -> int:
-    """Memory that worlds can have, on the device and on this machine, which keeps a copy of each."""
+    """Memory available for worlds, on the device and on this machine, which keeps a copy of each."""
     here = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     return min(here, trial.found["device"].get("free_bytes", here))
 
 
 def times(trial: Trial, program: str, folder: Path) -> dict[str, Any]:
-    """World-steps per second over numbers of worlds; with full learning, and without any."""
+    """World-steps per second for several numbers of worlds; with full learning and with a single epoch."""
     full = world("baseline", folder, {**FULL, **(FEW if trial.emulated else {})})
     acting = world("baseline", folder, {**FULL, "learning.update_epochs": 1, **(FEW if trial.emulated else {})})
     numbers = (1, 2) if trial.emulated else (1, 16, 64, 128, 256, 512)
@@ -97,7 +97,7 @@ def times(trial: Trial, program: str, folder: Path) -> dict[str, Any]:
 
 
 def commands(trial: Trial, folder: Path) -> dict[str, Any]:
-    """A run by `hedon run --backend cuda` that is interrupted, resumed on the processor, and checked."""
+    """Interrupts a run of `hedon run --backend cuda`, resumes it on the processor and checks it."""
     kernel = "cuda-emulated" if trial.emulated else "cuda"
     environment, device = ({"HEDON_BACKEND": kernel}, ()) if trial.emulated else ({}, ("--backend", kernel))
     if subprocess.run([sys.executable, "-c", "import hedon"], capture_output=True, check=False).returncode != 0:
@@ -143,7 +143,7 @@ def commands(trial: Trial, folder: Path) -> dict[str, Any]:
 
 
 def all_parts(trial: Trial, folder: Path, built: Path | None) -> None:
-    """Everything, the most important first."""
+    """Runs all parts, the most important first."""
     program = str(trial.part("program", lambda: str(built or build_default(trial.emulated))))
     trial.part("device", lambda: trial.call(program, "describe"))
     steps = (
@@ -170,7 +170,7 @@ def all_parts(trial: Trial, folder: Path, built: Path | None) -> None:
 
 
 def main() -> int:
-    """Does all parts that there is time for."""
+    """Runs as many parts as there is time for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--out", type=Path, default=PLACE / "device.json", help="where the JSON goes")
     parser.add_argument("--seconds", type=float, default=570.0, help="after which nothing new begins")
@@ -195,7 +195,7 @@ def main() -> int:
             if given.build:
                 print("\n".join(f"device: {path}" for path in programs.values()))
                 return 0
-            trial = Trial(given.out, given.seconds, given.emulate)  # its clock begins after the build
+            trial = Trial(given.out, given.seconds, given.emulate)  # its clock starts after the build
             if given.variants:
                 compare_variants(trial, Path(folder), programs)
             else:

@@ -1,4 +1,4 @@
-"""Builds the native program of `tests/device.py`, for a device or its emulation, in each variant of the kernels."""
+"""Builds the native program of `tests/device.py` for a device or its emulation, with each kernel variant."""
 
 import hashlib
 import os
@@ -23,10 +23,10 @@ EMULATION_OPTIONS = (*CPU_OPTIONS, "-mavx2", "-mfma", "-DHEDON_BLOCK_THREADS=64"
 
 
 def build_programs(emulated: bool, variants: list[str]) -> dict[str, Path]:
-    """The native program of each variant, built again only if a source has changed.
+    """The native program of each variant, rebuilt only if a source has changed.
 
     Raises:
-        BuildError: A compiler is missing, or fails.
+        BuildError: A compiler is missing or fails.
     """
     engine, place = ROOT / "engine", PLACE / ("emulated" if emulated else "cuda")
     digest = source_digest()
@@ -67,7 +67,7 @@ def build_programs(emulated: bool, variants: list[str]) -> dict[str, Path]:
 
 
 def source_digest() -> str:
-    """A digest of all sources that a program is made of."""
+    """A digest of all sources of the programs."""
     content = hashlib.sha256()
     for folder in (ROOT / "engine", ROOT / "tests" / "native"):
         for path in sorted(folder.rglob("*")):
@@ -77,7 +77,7 @@ def source_digest() -> str:
 
 
 def compile_all(commands: list[list[str]]) -> None:
-    """Calls compilers, as many at a time as there are processors.
+    """Runs compilers, as many at a time as there are processors.
 
     Raises:
         BuildError: One of them fails.

@@ -1,4 +1,4 @@
-"""A trial of a device: the clock and the findings of `tests/device.py`, and the worlds that it runs."""
+"""A trial of a device: the clock and the results of `tests/device.py`, and the worlds that it runs."""
 
 import json
 import os
@@ -15,12 +15,12 @@ WINDOW = 1024
 SMALL = {"world.rollout_steps": 16, "learning.minibatch_size": 8, "learning.update_epochs": 2}
 FEW = {**SMALL, "population.capacity": 16, "population.initial_count": 10}
 FULL = {"population.initial_count": 150}
-"""As many agents as a world of the baseline has in the long run."""
+"""As many agents as a baseline world has in the long run."""
 RESERVE_SECONDS = 15
 
 
 class Trial:
-    """The run of this script: its clock, and what it has found, which is on disk after each part."""
+    """One run of the script: its clock, and its results, which are saved after each part."""
 
     def __init__(self, out: Path, seconds: float, emulated: bool) -> None:
         self.out, self.emulated = out, emulated
@@ -32,8 +32,8 @@ class Trial:
         return min(most, self.end - time.monotonic() - RESERVE_SECONDS)
 
     def call(self, *command: str, most: float = 120.0, environment: dict[str, str] | None = None) -> dict[str, Any]:
-        """What a command prints as JSON in its last line, or what went wrong."""
-        seconds = self.left(most)  # as long as it may take, unless the trial ends before
+        """The JSON that a command prints in its last line, or what went wrong."""
+        seconds = self.left(most)  # all of `most`, unless the trial ends earlier
         if seconds < 1:
             return {"skipped": "no time was left"}
         try:
@@ -55,7 +55,7 @@ class Trial:
         return {**parsed, "failed": f"status {done.returncode}", "said": (done.stdout + done.stderr)[-2000:]}
 
     def part(self, name: str, make: Callable[[], Any]) -> Any:
-        """Does a part, keeps what it found, and says so."""
+        """Runs a part, then saves and prints its results."""
         begun = time.monotonic()
         found = make()
         self.found[name] = found
@@ -68,7 +68,7 @@ class Trial:
 
 
 def failures(name: str, found: Any) -> list[str]:
-    """The places in what was found that say "failed"."""
+    """The entries "failed" anywhere in the results, each with its path."""
     if not isinstance(found, dict):
         return []
     here = [f"{name}: {found['failed']}"] if "failed" in found else []
@@ -76,7 +76,7 @@ def failures(name: str, found: Any) -> list[str]:
 
 
 def world(name: str, folder: Path, changes: Mapping[str, object]) -> str:
-    """The file of a world: a text of `data/device` with some settings changed, in all species."""
+    """Writes a world's file, a text from `data/device` with settings changed in all species; returns its path."""
     lines = (TEXTS / f"{name}.txt").read_text().splitlines()
     for path, value in changes.items():
         place = re.compile(rf"(species\[\d\]\.)?{re.escape(path)}=")
@@ -91,5 +91,5 @@ def world(name: str, folder: Path, changes: Mapping[str, object]) -> str:
 
 
 def presets() -> list[str]:
-    """Names of the worlds that are kept as texts."""
+    """Names of the worlds that are stored as texts."""
     return sorted(path.stem for path in TEXTS.glob("*.txt"))

@@ -1,7 +1,7 @@
-"""All variants of the kernels (`engine/cuda/variant.h`) on one device: `python3 tests/device.py --variants`.
+"""All kernel variants (`engine/cuda/variant.h`) on one device: `python3 tests/device.py --variants`.
 
-First it compares the bits of each variant with the processor's, then it takes times, the most telling ones first, so
-that a run that ends early has them of all variants.
+It compares the bits of each variant with the processor's, then measures times. The most informative timing comes first,
+so that a run that ends early has it for all variants.
 """
 
 from collections.abc import Mapping
@@ -32,12 +32,12 @@ class Timing:
 TIMINGS = (Timing(256, 1), Timing(256, 3), Timing(64, 1))
 EMULATED_TIMINGS = (Timing(1, 1), Timing(5, 2))
 MANY = 150
-"""More worlds than a device has multiprocessors, so that variants that divide worlds into groups have several."""
+"""More worlds than a device has multiprocessors, so that variants that group worlds have several groups."""
 MANY_EMULATED = 9
 
 
 def same_bits(trial: Trial, program: str, folder: Path) -> dict[str, Any]:
-    """Presets after a window and the beginning of the next, and many small worlds over several windows."""
+    """Compares presets after a window and the start of the next, and many small worlds over several windows."""
     changes = FEW if trial.emulated else {}
     steps = str(SMALL["world.rollout_steps"] + 2 if trial.emulated else WINDOW + 76)
     found = {
@@ -56,9 +56,9 @@ def take_time(trial: Trial, program: str, folder: Path, timing: Timing) -> dict[
 
 
 def compare_variants(trial: Trial, folder: Path, programs: Mapping[str, Path]) -> None:
-    """Adds to what the trial has found: what each variant is, whether its bits are right, its times, the fastest.
+    """Adds to the trial's results: each variant's description, whether its bits are right, its times, the ranking.
 
-    A variant with other bits than the processor's is not timed.
+    A variant whose bits differ from the processor's is not timed.
     """
     paths = {name: str(path) for name, path in programs.items()}
     trial.part("device", lambda: {name: trial.call(path, "describe") for name, path in paths.items()})
@@ -77,7 +77,7 @@ def compare_variants(trial: Trial, folder: Path, programs: Mapping[str, Path]) -
 
 
 def fastest(times: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """World-steps per second of the variants that were timed, the fastest first, by timing."""
+    """World-steps per second of the timed variants, fastest first, by timing."""
     speeds = {
         timing: {name: found["world_steps_per_second"] for name, found in by_variant.items() if "seconds" in found}
         for timing, by_variant in times.items()

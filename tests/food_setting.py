@@ -1,4 +1,4 @@
-"""Settings drawn at random in which food grows, for forecasts: laws of places, growth, arenas, bodies, costs."""
+"""Random settings with growing food, for tests of forecasts: placement, growth, arena, body and costs vary."""
 
 import math
 import random
@@ -9,7 +9,7 @@ FORMS = ("uniform", "gaussian", "switching", "mixture", "rectangle")
 
 
 def _spread(rng: random.Random, low: float, high: float) -> float:
-    """A number whose logarithm is uniform."""
+    """A number with a uniformly distributed logarithm."""
     return round(math.exp(rng.uniform(math.log(low), math.log(high))), 5)
 
 
@@ -39,7 +39,7 @@ def _kind(rng: random.Random, name: str, size: tuple[float, float]) -> list[str]
 
 
 def draw_setting(seed: int, policy: str = "random") -> Config:
-    """A setting of one species, drawn by a seed; its world may lack room for what it starts with."""
+    """A setting with one species, drawn with a seed; its world may lack room for its initial agents and foods."""
     rng = random.Random(seed)
     size = (_spread(rng, 200, 1200), _spread(rng, 200, 1200))
     radius, food_radius = rng.choice([5.0, 10.0, 10.0, 15.0]), rng.choice([2.0, 4.0, 4.0, 8.0])

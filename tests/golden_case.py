@@ -1,4 +1,4 @@
-"""The short lives whose digests are recorded: of every preset, of every mechanism, and of some together."""
+"""The short lives whose digests are recorded: each preset, each mechanism, and some combinations."""
 
 import tomllib
 from collections.abc import Callable
@@ -16,15 +16,15 @@ from hedon.config.schema.species import ONLY
 from hedon.experiment.simulation import Simulation
 
 STEPS = 100
-"""Three windows of 32 steps with their learning, and the beginning of the next."""
+"""Three windows of 32 steps with learning, and the start of the next."""
 SEED = 9
 
 Case = Callable[[Path, str], Simulation]
-"""Makes the simulation of a case, given a folder for its config and the name of a kernel."""
+"""Creates the simulation of a case, given a folder for its config and the name of a kernel."""
 
 
 def cases() -> dict[str, Case]:
-    """Every case by its name."""
+    """Every case, by name."""
     found: dict[str, Case] = {}
     for preset in PRESETS:
         for fidelity in FIDELITIES:
@@ -41,7 +41,7 @@ def cases() -> dict[str, Case]:
 
 
 def combinations() -> dict[str, Mixture]:
-    """Worlds of several mechanisms, by name."""
+    """Worlds with several mechanisms, by name."""
     tables = tomllib.loads((FOLDER / "combination.toml").read_text())
     return {
         name: Mixture(
@@ -53,7 +53,7 @@ def combinations() -> dict[str, Mixture]:
 
 
 def live(case: Case, folder: Path, kernel: str) -> tuple[str, Quantities]:
-    """A short life: the digest of its state, and those of its named quantities."""
+    """Runs a short life; returns digests of its state and of its named quantities."""
     simulation = case(folder, kernel)
     for i, species in enumerate(simulation.config.species.values()):
         if species.learning.policy == "external":
@@ -74,7 +74,7 @@ def _preset(preset: str, fidelity: str, folder: Path, kernel: str) -> Simulation
 
 
 def _whole(fidelity: str, folder: Path, kernel: str) -> Simulation:
-    """A world of full size, shortly before the end of its first window, on two threads."""
+    """A full-size world shortly before the end of its first window, on two threads."""
     simulation = Simulation(load_config("baseline", fidelity), [SEED], 2, kernel)
     simulation.run(1000)
     return simulation

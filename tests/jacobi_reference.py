@@ -1,7 +1,7 @@
-"""The contact solver `jacobi` once more, in NumPy and float64, written from docs/model.md and not from the engine.
+"""A second implementation of the contact solver `jacobi`, in NumPy and float64, based on docs/model.md, not the engine.
 
-One scene: discs that move, circles that do not, and a ring of walls, clockwise, with the inside to the right. Each
-contact joins `first` and `second`, -1 where the latter never moves; its normal points from the first to the second.
+A scene has discs that move, circles that do not, and a clockwise ring of walls with the inside to the right. Each
+contact joins `first` and `second`, which is -1 if it never moves; its normal points from the first to the second.
 """
 
 import math
@@ -14,14 +14,14 @@ DT, VELOCITY_PASSES, POSITION_PASSES = 0.1, 6, 2
 FRICTION, RESTITUTION, THRESHOLD = 0.2, 0.4, 1.0
 RATE, SLOP, LARGEST_CORRECTION = 0.2, 0.005, 0.2
 LEAST_DEPTH = 0.02
-"""Overlap from which the solver acts [u]."""
+"""Smallest overlap on which the solver acts [u]."""
 
 Name = tuple[str, int, int]
 
 
 @dataclass
 class Contacts:
-    """The contacts of a substep; `name` says which pair each one is, for its impulses."""
+    """The contacts of a substep; `name` identifies the pair of each one, to look up its impulses."""
 
     name: list[Name]
     first: np.ndarray
@@ -30,14 +30,14 @@ class Contacts:
     depth: np.ndarray
 
     def where(self, chosen: np.ndarray) -> "Contacts":
-        """Some of them."""
+        """The chosen contacts."""
         names = [name for name, keep in zip(self.name, chosen, strict=True) if keep]
         return Contacts(names, self.first[chosen], self.second[chosen], self.normal[chosen], self.depth[chosen])
 
 
 @dataclass
 class ReferenceScene:
-    """Bodies (n, 6): x, y, angle, velocity x and y, angular velocity. Impulses by pair [mass·u/s]."""
+    """Bodies (n, 6): x, y, angle, x and y velocity, angular velocity. Impulses by pair [mass·u/s]."""
 
     bodies: np.ndarray
     circles: np.ndarray
@@ -45,15 +45,15 @@ class ReferenceScene:
     impulse: dict[Name, tuple[float, float]] = field(default_factory=dict)
     touches: set[Name] = field(default_factory=set)
     margin: float = math.inf
-    """How near the last substep was to another decision: to or from a touch, a contact or a bounce [u, u/s]."""
+    """How close the last substep came to a different decision on a touch, a contact or a bounce [u, u/s]."""
 
     def step(self, force: np.ndarray, torque: np.ndarray, substeps: int = 5) -> None:
-        """One step: forces (n, 2) and torques (n,) act in its first substep."""
+        """Advances by one step; forces (n, 2) and torques (n,) act in the first substep."""
         for substep in range(substeps):
             self.substep(force * (substep == 0), torque * (substep == 0))
 
     def substep(self, force: np.ndarray, torque: np.ndarray) -> None:
-        """Forces, damping and caps; contacts; velocities; bounce; positions; motion."""
+        """Applies forces, damping and caps; then contacts, velocities, bounce, positions and motion."""
         state = self.bodies
         velocity = np.clip((state[:, 3:5] + force / MASS * DT) * math.exp(-0.8 * DT), -10.0, 10.0)
         spin = np.clip((state[:, 5] + torque / INERTIA * DT) * math.exp(-0.6 * DT), -math.pi, math.pi)
@@ -70,14 +70,14 @@ class ReferenceScene:
         self.keep_inside()
 
     def keep_inside(self) -> None:
-        """Puts centers that lie behind a wall 0.001 u before it."""
+        """Moves centers that are behind a wall to 0.001 u in front of it."""
         for start, end in self.walls.reshape(-1, 2, 2):
             inward = np.array([end[1] - start[1], start[0] - end[0]]) / np.hypot(*(end - start))
             behind = -(self.bodies[:, :2] - start) @ inward
             self.bodies[:, :2] += np.where(behind > 0, behind + 1e-3, 0.0)[:, None] * inward
 
     def overlaps(self, least: float) -> Contacts:
-        """All that overlaps by `least` or more, bodies first, then circles, then walls."""
+        """All pairs that overlap by `least` or more: bodies first, then circles, then walls."""
         place = self.bodies[:, :2]
         rows = []
         close = np.hypot(*(place[None] - place[:, None]).transpose(2, 0, 1)) <= 2 * RADIUS - least
@@ -100,7 +100,7 @@ class ReferenceScene:
         return all_pairs.where(all_pairs.depth >= least)
 
     def wall_point(self, wall: int, center: np.ndarray) -> np.ndarray | None:
-        """The point of a wall that counts for a body; None behind it, and beyond its ends where the rule says so."""
+        """The contact point of a wall for a body; None behind the wall, or beyond an end that the rule excludes."""
         start, end = self.walls[wall, :2], self.walls[wall, 2:]
         before, after = self.walls[wall - 1, :2], self.walls[(wall + 1) % len(self.walls), 2:]
         along, offset = end - start, center - start
@@ -113,7 +113,7 @@ class ReferenceScene:
         return start + min(max(offset @ along / (along @ along), 0.0), 1.0) * along
 
     def _solve(self, found: Contacts, moving: np.ndarray) -> None:
-        """Six Jacobi passes and the bounce; changes `moving`, (n, 3), and the impulses that are kept."""
+        """Runs six Jacobi passes and the bounce; updates `moving`, (n, 3), and the stored impulses."""
         first, second, depth = found.first, found.second, found.depth
         normal, tangent = found.normal, np.column_stack([-found.normal[:, 1], found.normal[:, 0]])
         pair = second >= 0
@@ -123,13 +123,13 @@ class ReferenceScene:
         bias = RATE / DT * np.maximum(0, depth - SLOP)
 
         def relative() -> tuple[np.ndarray, np.ndarray]:
-            """Velocities of the contacts along normal and tangent."""
+            """Relative velocities at the contacts, along normal and tangent."""
             other = np.where(pair[:, None], moving[second], 0.0)
             speed = other[:, :2] - moving[first, :2]
             return (speed * normal).sum(1), (speed * tangent).sum(1) - arm * (moving[first, 2] + other[:, 2])
 
         def apply(push: np.ndarray, rub: np.ndarray) -> None:
-            """Adds impulses of all contacts to the bodies."""
+            """Applies the impulses of all contacts to the bodies."""
             impulse = push[:, None] * normal + rub[:, None] * tangent
             turn = arm * rub / INERTIA
             np.subtract.at(moving[:, :2], first, impulse / MASS)
@@ -141,7 +141,7 @@ class ReferenceScene:
         approach, _ = relative()
         for number in range(VELOCITY_PASSES):
             along, aside = relative()
-            if number == 0:  # Each sees its own two bodies with its own stored impulse; the bodies never get it.
+            if number == 0:  # Each contact sees its two bodies with its stored impulse, which is never applied to them.
                 along, aside = along + push / normal_mass, aside + rub / tangent_mass
             new_rub = np.clip(rub - tangent_mass * aside, -FRICTION * push, FRICTION * push)
             new_push = np.maximum(0, push + normal_mass * (bias - along))

@@ -1,4 +1,4 @@
-"""A run in a process of its own, to be killed: small, but with several worlds, frames, births and deaths."""
+"""A run in a separate process, to be killed: small, but with several worlds, frames, births and deaths."""
 
 import multiprocessing
 import signal
@@ -13,7 +13,7 @@ from hedon.experiment.resume import resume
 from hedon.record.folder import holds_run
 
 FAULT = 3
-"""Exit code of a process that could not go on."""
+"""Exit code of a process that failed."""
 STEPS = 1500
 SEEDS = (1, 2)
 
@@ -22,7 +22,7 @@ _context.set_forkserver_preload(["hedon.experiment.resume", "hedon.experiment.ru
 
 
 def go(folder: Path, checkpoint_seconds: float = 0.0) -> None:
-    """Begins the run, or goes on with it where the folder holds one. A checkpoint follows every piece."""
+    """Starts the run, or resumes it if the folder holds one. By default, a checkpoint follows every piece."""
     if holds_run(folder):
         resume(folder, threads=1, checkpoint_seconds=checkpoint_seconds)
     else:
@@ -30,14 +30,14 @@ def go(folder: Path, checkpoint_seconds: float = 0.0) -> None:
 
 
 def start(folder: Path) -> BaseProcess:
-    """`go` in a process of its own: a fork of one that has imported everything already."""
+    """Runs `go` in a new process, forked from one that has already imported everything."""
     process = _context.Process(target=_go_in_process, args=(folder,))
     process.start()
     return process
 
 
 def _go_in_process(folder: Path) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # a Ctrl-C before the run listens for it ends the process at once
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # until the run handles Ctrl-C, it ends the process at once
     try:
         go(folder)
     except Exception:

@@ -1,4 +1,4 @@
-"""Random cases of learning that the tests of the kernels share."""
+"""Random learning cases, shared by the tests of the kernels."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Case:
 
 
 def observations(rng: np.random.Generator, shape: Shape, count: int, scale: float = 1.0) -> np.ndarray:
-    """Packed observations: a third of the rays hit nothing, a tenth of the sectors are touched."""
+    """Packed observations in which a third of the rays hit nothing and a tenth of the sectors are touched."""
     rays, types, touches, dense = shape
     ray = 1.0 + rng.random((count, rays))
     ray_type = rng.integers(0, types, (count, rays))
@@ -75,7 +75,7 @@ def observations(rng: np.random.Generator, shape: Shape, count: int, scale: floa
 
 
 def random_case(seed: int, shape: Shape = ONE_KIND_RAW, count: int = 256, mean_scale: float = 30.0) -> Case:
-    """A fresh network with livelier mean heads, and a rollout whose ratios lie on both sides of the clip."""
+    """A fresh network with larger weights for the means, and a rollout with ratios on both sides of the clip."""
     rng = np.random.default_rng(seed)
     params = _engine.learning.init_network(shape, seed)
     w3 = _engine.learning.param_count(shape) - 16 - 3 * 64
