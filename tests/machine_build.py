@@ -1,7 +1,7 @@
-"""Machines that are not this one: how to compile for each of them, and how to run here what was compiled.
+"""Machines other than this one: how to compile for each of them, and how to run the programs here.
 
-Zig's Clang, a pinned package, compiles for all of them; g++ for ARM is there as a second compiler. QEMU runs programs
-of ARM, Wine those of Windows; what is for macOS can only be compiled.
+Zig's Clang, a pinned package, compiles for all of them; g++ for ARM serves as a second compiler. QEMU runs ARM programs
+and Wine runs Windows programs; programs for macOS can only be compiled.
 """
 
 import os
@@ -25,7 +25,7 @@ LANES = {
     "neon": (),
     "portable": (),
 }
-"""The lane types, each with what a compiler has to be told about the processor."""
+"""The lane types, each with the compiler options for its processor."""
 
 
 @dataclass(frozen=True)
@@ -33,14 +33,14 @@ class Machine:
     """A machine that programs are built for.
 
     Attributes:
-        name: of the folder of its build.
-        lanes: the lane types that its processor has.
-        target: its name for Zig; empty for the compiler `compiler`.
-        compiler: that is called instead of Zig's.
-        runner: the program that runs its programs here; empty if they run by themselves.
-        package: the Debian packages of the compiler and the runner.
-        runs: whether its programs can run here.
-        suffix: of its programs.
+        name: Name of its build folder.
+        lanes: Lane types that its processor supports, the best first.
+        target: Its name in Zig; empty if `compiler` is used.
+        compiler: Compiler to use instead of Zig's.
+        runner: Program that runs its programs here; empty if they run directly.
+        package: Debian packages of the compiler and the runner.
+        runs: Whether its programs can run here.
+        suffix: File suffix of its programs.
     """
 
     name: str
@@ -54,7 +54,7 @@ class Machine:
 
     @property
     def fused(self) -> str:
-        """Its lane type whose bits all machines have."""
+        """Its lane type with the same bits on all machines."""
         return self.lanes[0]
 
 
@@ -79,7 +79,7 @@ MACHINES = {
 
 
 def need(machine: Machine) -> None:
-    """Skips the test where what it needs is not installed, and names the package that has it."""
+    """Skips the test if a required tool is not installed, and names the package that provides it."""
     if machine.target and find_spec("ziglang") is None:
         pytest.skip("needs Zig's compiler: uv sync --group viewer")
     for tool in filter(None, (machine.compiler, *machine.runner)):
@@ -88,7 +88,7 @@ def need(machine: Machine) -> None:
 
 
 def build_life(machine: Machine) -> Path:
-    """The whole engine with the program `native/life.cpp`, by CMake."""
+    """Builds the whole engine with the program `native/life.cpp`, using CMake."""
     folder = ROOT / "build" / "machine" / machine.name
     if machine.target:
         how = [f"--toolchain={ROOT / 'cmake/zig.cmake'}", f"-DHEDON_ZIG={zig()}"]
@@ -103,7 +103,7 @@ def build_life(machine: Machine) -> Path:
 
 
 def build_lanes(machine: Machine | None, lanes: str, folder: Path) -> Path:
-    """The program `native/lanes.cpp` with a lane type; for this machine if none is given."""
+    """Builds the program `native/lanes.cpp` with a lane type; for this machine if none is given."""
     out = folder / f"lanes-{lanes}{machine.suffix if machine else ''}"
     if machine is None:
         compiler = ["c++"]
@@ -117,13 +117,13 @@ def build_lanes(machine: Machine | None, lanes: str, folder: Path) -> Path:
 
 
 def run(machine: Machine | None, program: Path, *arguments: str) -> list[str]:
-    """The lines that a program prints."""
+    """Runs a program and returns the lines that it prints."""
     runner = machine.runner if machine else ()
     return _call(*runner, str(program), *arguments).splitlines()
 
 
 def _call(*command: str) -> str:
-    environment = os.environ | {"WINEDEBUG": "-all"}  # no words of Wine's beside those of the program
+    environment = os.environ | {"WINEDEBUG": "-all"}  # keeps Wine's messages out of the program's output
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout[-2000:]}{done.stderr[-4000:]}"
     return done.stdout

@@ -1,9 +1,9 @@
-"""The tests that meet the compiler, the interpreter and the libraries, with each of them: `python tests/matrix.py`.
+"""Runs the tests that depend on compiler, interpreter and libraries with each of these: `python tests/matrix.py`.
 
-For Python 3.11 and 3.13, each with g++ and with Clang: an environment of its own in `build/matrix`, the engine with all
-warnings as errors, then digests, units, and the command line. What is not installed is named and left out. The Clang
-is the first of 15 or newer in the path, else the one of the package `ziglang`. Then with the oldest libraries that
-`pyproject.toml` allows.
+For Python 3.11 and 3.13, each with g++ and with Clang, it creates an environment in `build/matrix`, builds the engine
+with warnings as errors, and tests digests, units and the command line. Missing tools are reported and skipped. Clang is
+the first one of version 15 or newer in PATH, or else that of the package `ziglang`. Finally, it runs tests with the
+oldest libraries that `pyproject.toml` allows.
 """
 
 import os
@@ -37,7 +37,7 @@ def clang() -> str:
             said = subprocess.run([path, "-dumpversion"], capture_output=True, text=True, check=False).stdout
             if (number := re.match(r"\d+", said)) and int(number[0]) >= OLDEST_CLANG:
                 return path
-    # Unless told, Zig builds for all that this one processor has.
+    # By default, Zig uses every feature of this particular processor.
     return f"{zig()} c++ -mcpu=baseline" if find_spec("ziglang") else ""
 
 
@@ -55,7 +55,7 @@ def passes(python: str, name: str, compiler: str) -> bool:
 
 
 def passes_with_oldest(python: str) -> bool:
-    """Tests with the oldest libraries that are allowed; what only tests need is new where it takes these."""
+    """Tests with the oldest allowed libraries; packages that only tests need are the newest that accept these."""
     place = ROOT / "build" / "matrix" / "oldest"
     program, oldest = place / "env" / "bin" / "python", place / "oldest.txt"
     environment = os.environ | {"VIRTUAL_ENV": str(place / "env"), "PYTHONPATH": "tests"}
@@ -79,7 +79,7 @@ def passes_with_oldest(python: str) -> bool:
 
 
 def main() -> int:
-    """Tries every pair; returns an exit status."""
+    """Tries every pair of Python and compiler; returns an exit status."""
     compilers = {"g++": shutil.which("g++") or "", "clang": clang()}
     advice = {"g++": "apt-get install g++", "clang": "apt-get install clang-16, or uv sync --group viewer"}
     failed, tried = [], 0

@@ -1,10 +1,10 @@
-"""Every mechanism that a world may have, each described once, and worlds that combine them.
+"""Every mechanism that a world can have, each described once, and worlds that combine them.
 
-A mechanism is a file in `data/mechanism/`: settings of a config, laid over those of `base.toml`. In names and values
-"@self" is the species that has it, "@other" the next species, and "@rule" the file of rules. What else a file says
-stands in `mechanism`: `draw` (other values of its settings, by path), `group` (of one group, a species has one),
-`clash` (mechanisms that exclude it), `species` (the fewest that it takes), `whole` (all species have it), and what no
-setting says: `driven` by a caller, `founders` or `networks` as data.
+A mechanism is a file in `data/mechanism/`: config settings that override those of `base.toml`. In names and values,
+"@self" is the species that has it, "@other" the next species, and "@rule" the file of rules. Everything else is in the
+table `mechanism`: `draw` (other values of its settings, by path), `group` (a species has at most one mechanism of a
+group), `clash` (mechanisms that exclude it), `species` (the smallest number it needs), `whole` (all species have it),
+and what settings cannot express: `driven` by a caller, `founders` or `networks` as data.
 """
 
 import random
@@ -31,7 +31,7 @@ Settings = dict[tuple[str, ...], Any]
 
 @dataclass(frozen=True)
 class Mechanism:
-    """One mechanism: see the head of this file."""
+    """One mechanism: see the top of this file."""
 
     name: str
     settings: Settings = field(repr=False, hash=False)
@@ -46,12 +46,12 @@ class Mechanism:
 
     @cached_property
     def shared(self) -> bool:
-        """Whether some of it holds for the whole world."""
+        """Whether some of its settings apply to the whole world."""
         return self.founders or any(map(is_shared, self.settings))
 
     @cached_property
     def own(self) -> bool:
-        """Whether some of it is of one species."""
+        """Whether some of its settings belong to one species."""
         return not all(map(is_shared, self.settings))
 
     @cached_property
@@ -61,7 +61,7 @@ class Mechanism:
 
     @cached_property
     def pointed(self) -> bool:
-        """Whether it names species."""
+        """Whether its settings name species."""
         return any("@self" in text or "@other" in text for text in map(str, self.settings.items()))
 
     def excludes(self, other: "Mechanism") -> bool:
@@ -77,7 +77,7 @@ class Mechanism:
 
 
 def is_shared(path: tuple[str, ...]) -> bool:
-    """Whether a setting holds for the whole world."""
+    """Whether a setting applies to the whole world."""
     return path[0] not in PER_SPECIES
 
 
@@ -90,7 +90,7 @@ def flat(tables: Mapping[str, Any], path: tuple[str, ...] = ()) -> Settings:
 
 
 def read(path: Path) -> tuple[dict[str, Any], Settings]:
-    """What a file says of a mechanism, and its settings."""
+    """A file's table `mechanism`, and its settings."""
     tables = tomllib.loads(path.read_text())
     about = {
         name: tuple(value) if isinstance(value, list) else value for name, value in tables.pop("mechanism", {}).items()
@@ -103,7 +103,7 @@ BASE = read(FOLDER / "base.toml")[1]
 
 @cache
 def mechanisms() -> dict[str, Mechanism]:
-    """Every mechanism by its name, in a fixed order."""
+    """Every mechanism by name, in a fixed order."""
     found = {}
     for path in sorted(FOLDER.glob("*/*.toml")):
         about, settings = read(path)
@@ -114,7 +114,7 @@ def mechanisms() -> dict[str, Mechanism]:
 
 @dataclass(frozen=True)
 class Part:
-    """A mechanism in a world: of a species by its index, or of all."""
+    """A mechanism in a world: of one species, by index, or of all."""
 
     mechanism: Mechanism
     species: int | None = None
@@ -130,7 +130,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Mixture:
-    """A world of several mechanisms; without names of species its config has no `[species]`."""
+    """A world with several mechanisms; if `species` is empty, its config has no `[species]`."""
 
     species: tuple[str, ...]
     parts: tuple[Part, ...]
@@ -160,19 +160,19 @@ class Mixture:
         return self.species[index], self.species[(index + 1) % len(self.species)]
 
     def config(self, folder: Path) -> Config:
-        """Its config, through a file in a folder."""
+        """Its config, loaded from a file in a folder."""
         file = folder / "world.toml"
         file.write_text(self.text)
         return load_config(file)
 
     @property
     def pairs(self) -> set[tuple[str, str]]:
-        """The pairs of mechanisms that meet in it."""
+        """The pairs of mechanisms in it."""
         names = {part.mechanism.name for part in self.parts}
         return {*combinations([name for name in mechanisms() if name in names], 2)}
 
     def any(self, what: str) -> bool:
-        """Whether a mechanism says this: "driven", "founders" or "networks"."""
+        """Whether a mechanism has this attribute: "driven", "founders" or "networks"."""
         return any(getattr(part.mechanism, what) for part in self.parts)
 
 
@@ -185,20 +185,20 @@ def _named(value: Any, mine: str, other: str) -> Any:
 
 
 def alone(mechanism: Mechanism) -> Mixture:
-    """A world with one mechanism: of the first of as few species as it takes."""
+    """A world with one mechanism and as few species as it needs; the first species has it."""
     count = mechanism.species
     return Mixture(NAMES[:count], (Part(mechanism, 0 if count and not mechanism.whole else None),))
 
 
 def possible_pairs() -> set[tuple[str, str]]:
-    """The pairs of mechanisms that one world can have."""
+    """The pairs of mechanisms that a world can combine."""
     return {(a.name, b.name) for a, b in combinations(mechanisms().values(), 2) if not a.excludes_everywhere(b)}
 
 
 def worlds(seed: int, size: int) -> Iterator[tuple[Mixture, set[tuple[str, str]]]]:
-    """Random worlds of `size` mechanisms without end, each with the pairs that no world had so far.
+    """Endless random worlds of up to `size` mechanisms, each with the pairs that are new in it.
 
-    The first ones have every possible pair at least once; then this begins again with other values and species.
+    Once every possible pair has occurred, the cycle restarts with other values and species.
     """
     draw = random.Random(seed)
     missing: set[tuple[str, str]] = set()
@@ -233,7 +233,7 @@ def _gain(mechanism: Mechanism, parts: list[Part], missing: set[tuple[str, str]]
 
 
 def _places(draw: random.Random, mechanism: Mechanism, species: tuple[str, ...]) -> list[Part]:
-    """A mechanism in every species and in all of them, in a random order, with values of its own."""
+    """A mechanism in each species and in all of them, in random order, with randomly drawn values."""
     of: list[int | None] = [*range(len(species))]
     draw.shuffle(of)
     if not species or mechanism.whole or not mechanism.own:

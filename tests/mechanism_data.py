@@ -1,4 +1,4 @@
-"""What worlds of tests begin with beside their settings: tables of founders, and networks."""
+"""Initial data of test worlds in addition to their settings: tables of founders, and networks."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ from hedon.record.network import Networks, fixed_species
 
 
 def founders_of(world: Mixture, config: Config) -> Founders | None:
-    """Two groups of founders with two of the genes; None where founders are drawn."""
+    """Two groups of founders with values for two genes; None if founders are drawn."""
     if not world.any("founders"):
         return None
     values = np.array([[0.5, -0.25], [-1.0, 0.125], [1.5, 0.0]])
@@ -22,7 +22,7 @@ def founders_of(world: Mixture, config: Config) -> Founders | None:
 
 
 def networks_of(world: Mixture, config: Config) -> Networks | None:
-    """Three networks for every species that never learns; None where none are given."""
+    """Three networks for each species that never learns; None if no networks are given."""
     if not world.any("networks"):
         return None
     params, inputs = {}, {}
@@ -35,7 +35,7 @@ def networks_of(world: Mixture, config: Config) -> Networks | None:
 
 
 def begin(world: Mixture, config: Config, seeds: Sequence[int], threads: int, kernel: str = "") -> Simulation:
-    """A simulation of a world, with all that it begins with."""
+    """A simulation of a world with its initial data."""
     simulation = Simulation(config, seeds, threads, kernel)
     founders, networks = founders_of(world, config), networks_of(world, config)
     if founders is not None:
@@ -46,7 +46,7 @@ def begin(world: Mixture, config: Config, seeds: Sequence[int], threads: int, ke
 
 
 def _size(config: Config, name: str) -> int:
-    """Parameters of a network of a species."""
+    """Number of parameters of a species' network."""
     sensor, layout = config.species[name].sensor, layouts(config)[name]
     touches = len(layout.touches) * sensor.touch_sectors
     rest = len(observation_columns(config, name)) - sensor.ray_count * len(layout.sees) - touches

@@ -1,4 +1,4 @@
-"""Small crowded worlds whose species differ: who eats whom, who starves, who mates, who has which genes."""
+"""Small, crowded worlds whose species differ in diet, starvation, mating and genes."""
 
 from pathlib import Path
 
@@ -67,5 +67,5 @@ def mechanism_config(name: str) -> Config:
 
 
 def mechanism_run(config: Config, out: Path, steps: int = STEPS, seeds: tuple[int, ...] = (1, 2)) -> Manifest:
-    """Runs it, with frames, and checkpoints at its start and its end."""
+    """Runs a config, with frames, and checkpoints at the start and the end."""
     return run(RunPlan(config, seeds, steps, out, 1, 50, 1e9))

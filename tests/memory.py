@@ -1,4 +1,4 @@
-"""Writes into the memory of a world, as a memory error would: for tests of the checks that find it."""
+"""Overwrites a world's memory as a memory error would, to test the checks that detect it."""
 
 import ctypes
 
@@ -8,7 +8,7 @@ from hedon.experiment.simulation import Simulation
 
 
 def overwrite(simulation: Simulation, world: int, path: str, index: int, value: float) -> None:
-    """Overwrites number `index`, counted over all rows, of one array of a world's state."""
+    """Overwrites one number in an array of a world's state; `index` counts across all rows."""
     view = simulation.engine.view(world, path)
     at = view.ctypes.data + int(np.dot(np.unravel_index(index, view.shape), view.strides))
     number = np.array([value]).astype(view.dtype)

@@ -1,7 +1,7 @@
-"""What a world is, by names: quantities that stay equal when only memory, slots or the form of settings change.
+"""The named quantities of a world, which do not change if only memory layout, slots or the form of settings change.
 
-Each quantity is read by its public name, in an order of its own: agents by their ids, genes and inputs by their names,
-foods by their places. Numbers keep every bit.
+Each quantity is read by its public name, in a canonical order: agents by id, genes and inputs by name, foods by
+position. Numbers keep every bit.
 """
 
 import hashlib
@@ -20,7 +20,7 @@ LIFE = {
     *("agent_id", "parent_id", "mate_id", "generation", "birth_step", "death_step", "cause", "children"),
     *("energy", "birth_energy", "energy_gained", "energy_spent", "distance", "reward"),
 }
-"""What is known of every agent, dead or alive, beside its genes and its meals."""
+"""Recorded of every agent, dead or alive, in addition to its genes and meals."""
 FORCE, VELOCITY = ("force_left", "force_right"), ("velocity_x", "velocity_y", "angular_velocity")
 MORE_COUNTERS = (
     *(f"hunt_counters.{name}" for name in ("deaths_starved", "deaths_eaten", "energy_hunted", "energy_prey")),
@@ -32,9 +32,9 @@ Quantities = dict[str, dict[str, str]]
 
 
 def quantities(world: World) -> Quantities:
-    """A short digest of each quantity of a world whose deaths nobody has taken, by species and name.
+    """A short digest of each quantity by species and name, for a world whose deaths have not been taken.
 
-    What belongs to no species is of "world".
+    Quantities that belong to no species are listed under "world".
     """
     found = {"world": dict(_of_world(world))}
     dead, living = world.deaths(), world.agents()
@@ -49,7 +49,7 @@ def quantities(world: World) -> Quantities:
 
 
 def short(*values: ArrayLike) -> str:
-    """A digest of numbers, whatever their type: 8 hexadecimal digits."""
+    """A digest of numbers of any type: 8 hexadecimal digits."""
     content = hashlib.sha256()
     for each in values:
         numbers = np.ascontiguousarray(each, np.float64)
@@ -70,7 +70,7 @@ def _of_world(world: World) -> Iterator[tuple[str, str]]:
 def _of_lives(
     world: World, name: str, dead: dict[str, NDArray[Any]], living: dict[str, NDArray[Any]]
 ) -> Iterator[tuple[str, str]]:
-    """Everyone who ever lived, by id."""
+    """Quantities of all agents that ever lived, in order of id."""
     every = {key: np.concatenate([dead[key], living[key]]) for key in dead}
     every = {key: values[np.argsort(every["agent_id"])] for key, values in every.items()}
     for key in sorted(LIFE & set(every)):
@@ -84,7 +84,7 @@ def _of_lives(
 
 
 def _of_living(world: World, index: int, living: dict[str, NDArray[Any]]) -> Iterator[tuple[str, str]]:
-    """Those alive, by id: where they are, what they sense, and their networks."""
+    """Quantities of living agents, in order of id: places, senses and networks."""
     yield "place", short(living["x"], living["y"])
     yield "angle", short(living["angle"])
     yield "velocity", short(*(living[key] for key in VELOCITY))
@@ -111,13 +111,13 @@ def _networks(world: World, inputs: Sequence[str], species: NDArray[np.int32], i
 
 
 def _group(column: str) -> str:
-    """The channel of an entry: `ray_wall` of `ray_wall_3`; `self` of what an agent knows of itself."""
+    """The channel of an entry: `ray_wall` for `ray_wall_3`, `self` for what an agent senses of itself."""
     head, _, tail = column.rpartition("_")
     return head if tail.isdigit() else "self"
 
 
 def _counted(world: World, index: int) -> Iterator[tuple[str, str]]:
-    """What a world counts since its beginning, of one species."""
+    """Counters of one species since the start of the world."""
     counters = dict(world.counters_of(index))
     for name in MORE_COUNTERS:
         values = world.view(name)

@@ -1,4 +1,4 @@
-"""What the physics says was touched in a step, against where everything lay."""
+"""Compares the touches reported by the physics in a step with the positions of everything."""
 
 import math
 from typing import Any
@@ -12,11 +12,11 @@ from reference.state import Deed, World
 from hedon.experiment.simulation import Simulation
 
 MARGIN = 1e-3
-"""Nearer than this to an edge [u], or to the cosine of the end of a mouth, either answer is right."""
+"""Within this distance of an edge [u], or of the cosine of a mouth's end, either answer is right."""
 
 
 def touch_bits(world: Any, slots: list[int]) -> list[int]:
-    """Bit channel · sectors + sector of what each agent felt in the last step."""
+    """What each agent felt in the last step; bit channel · sectors + sector is set for a touch."""
     more = world.view("touch_more")
     high = more[slots].tolist() if len(more) else [0] * len(slots)
     return [low + (up << 64) for low, up in zip(world.view("touch")[slots].tolist(), high, strict=True)]
@@ -25,11 +25,12 @@ def touch_bits(world: Any, slots: list[int]) -> list[int]:
 def assert_touches(
     simulation: Simulation, rules: Rules, before: World, slots: list[int], deeds: list[Deed]
 ) -> dict[str, int]:
-    """What lay in a mouth as the step began was met, and what was met lay near; so with agents and obstacles. A food is
-    met only where its kind is felt, and the reverse, where the mouth is made of whole sectors. Returns what was met."""
+    """Asserts that foods inside a mouth at the start of the step were met, and that foods met were near; likewise for
+    agents and obstacles. If the mouth consists of whole sectors, a kind of food was met if and only if it was felt
+    there. Returns the numbers of encounters."""
     met = {"mouthfuls": 0, "prey_met": 0, "harmed": 0, "harmless": 0}
     world, harm, physics = simulation.worlds[0], harmful(rules, before.step), simulation.config.physics
-    # Furthest that a body moves in a step at the speed cap [u].
+    # Farthest that a body can move in a step at the speed cap [u].
     moves = math.sqrt(2) * physics.max_speed * physics.dt * physics.substeps
     ids, bits = world.view("life.agent_id")[slots].tolist(), touch_bits(world, slots)
     foods = [[(x, y, rules.food_radius) for x, y in stock.foods] for stock in before.stocks]
@@ -45,7 +46,7 @@ def assert_touches(
             inside, close = near_foods[k][i]
             assert inside <= eaten <= close
             sectors = _mouth_sectors(species)
-            # A newborn may lie where an agent died in this step; what that one touched is not known any more.
+            # A newborn may occupy the slot of an agent that died in this step, whose touches are then lost.
             if sectors and ids[i] == agent.agent_id:
                 felt = bits[i] >> species.touches.index(kind) * species.sensor.touch_sectors
                 assert any(felt >> sector & 1 for sector in sectors) == bool(eaten)
@@ -65,7 +66,7 @@ def assert_touches(
 
 
 def _near(rules: Rules, world: World, circles: list, moves: float) -> list[tuple[set[int], set[int]]]:
-    """Of each agent, which circles lay in its mouth, and which so near that they could come into it."""
+    """For each agent, the circles inside its mouth, and those near enough to get there."""
     x, y, radius = np.reshape(circles, (-1, 3)).T
     sensors = [rules.of(agent).sensor for agent in world.agents]
     mouths = [
@@ -84,7 +85,7 @@ def _near(rules: Rules, world: World, circles: list, moves: float) -> list[tuple
 
 
 def _mouth_sectors(species: Any) -> list[int]:
-    """The sectors that make up the mouth; none where it ends within one."""
+    """The sectors that make up the mouth; empty if it ends inside a sector."""
     count = species.sensor.touch_sectors
     spread, center = species.sensor.mouth_spread, species.sensor.mouth_center
     first, last = ((center + side * spread) * count / 360 for side in (-1, 1))

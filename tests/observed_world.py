@@ -1,4 +1,4 @@
-"""The state of a simulation and what its agents did, as the reference model takes them."""
+"""The state of a simulation and the actions of its agents, in the form that the reference model takes."""
 
 from dataclasses import fields
 from typing import Any
@@ -13,11 +13,11 @@ from hedon.experiment.simulation import Simulation
 from hedon.record.schema import CAUSES
 
 FIRST, SECOND = 1, 2
-"""Marks of a pair of bodies: the mouth of the first, or of the second, touches the other, which it may eat."""
+"""Marks of a pair of bodies: the mouth of the first or the second touches the other, which it may eat."""
 
 
 def read_world(simulation: Simulation) -> World:
-    """The state that the rules speak of, copied from the engine."""
+    """The state to which the rules refer, copied from the engine."""
     world = simulation.worlds[0]
     foods, kinds, head = world.foods(), len(world.config.food), simulation.engine.head(0)
     supply = {name: world.view(f"food_stock.{name}").tolist() for name in ("number", "eaten", "center")}
@@ -75,7 +75,7 @@ def _agents(world: Any, made: tuple[SpeciesLayout, ...]) -> list[Agent]:
 
 
 def _sums(world: Any) -> list[dict[str, float]]:
-    """Counters and ledger of each species; those of mechanisms that the world does not have are 0."""
+    """Counters and ledger of each species; 0 for mechanisms that the world lacks."""
     more = [(f"hunt_counters.{name}", name) for name in HUNTED] + [(f"obstacle_counters.{n}", n) for n in HARMED]
     sums = []
     for s in range(len(world.config.species)):
@@ -112,14 +112,14 @@ def _newborns(world: Any, genes: list[int], births: int) -> list[Newborn]:
 
 
 def food_slots(simulation: Simulation) -> dict[int, tuple[int, int]]:
-    """Kind and index within the kind of the food in each slot of the physics' circles."""
+    """Kind, and index within that kind, of the food in each circle slot of the physics."""
     slots = np.flatnonzero(simulation.worlds[0].view("physics.circles.present")).tolist()
     kinds = simulation.worlds[0].foods()["kind"].tolist()
     return {slot: (k, kinds[:n].count(k)) for n, (slot, k) in enumerate(zip(slots, kinds, strict=True))}
 
 
 def rollout_rows(simulation: Simulation, before: World, slots: list[int], name: str, width: int = 1) -> np.ndarray:
-    """What the step after `before` wrote into a rollout for those in `slots`, (agents, width) or (agents,)."""
+    """Rollout entries that the step after `before` wrote for the agents in `slots`, (agents, width) or (agents,)."""
     world = simulation.worlds[0]
     table = world.view(name).reshape(len(world.view("alive")), -1, width)
     learns = [species.learning.policy == "ppo" for species in world.config.species.values()]
@@ -129,7 +129,7 @@ def rollout_rows(simulation: Simulation, before: World, slots: list[int], name: 
 
 
 def read_deeds(simulation: Simulation, before: World, slots: list[int], foods: dict, seen: list) -> list[Deed]:
-    """What those in `slots` did in the last step. Who touched what is noted in the physics' lists of pairs."""
+    """What the agents in `slots` did in the last step; touches come from the physics' lists of pairs."""
     view = simulation.worlds[0].view
     bodies = view("physics.neighbors.head.bodies")[0]
     at = view("physics.neighbors.slot").tolist()
@@ -165,7 +165,7 @@ def read_deeds(simulation: Simulation, before: World, slots: list[int], foods: d
     deaths = simulation.engine.head(0)["death_log_count"]
     eaten = view("death_log.agent_id")[:deaths][view("death_log_cause")[:deaths] == CAUSES.index("eaten")]
     for i, (slot, agent, place) in enumerate(zip(slots, before.agents, places, strict=True)):
-        if now[i] != agent.agent_id:  # it died, and a newborn lies there
+        if now[i] != agent.agent_id:  # it died, and a newborn has its slot
             place = [agent.x, agent.y, agent.angle]
         gone = now[i] != agent.agent_id and agent.agent_id in eaten
         met = (mouthfuls[slot], prey[slot], sorted(obstacles[slot]), seen[i], tuple(motions[i]), felt[i])

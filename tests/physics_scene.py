@@ -1,4 +1,4 @@
-"""Scenes for the physics tests: the model's settings, its arena, crowds without overlap, and motors."""
+"""Scenes for the physics tests: the model's settings and arena, crowds without overlap, and motors."""
 
 import math
 from typing import Any
@@ -43,10 +43,10 @@ def arena_walls(width=480.0, height=360.0, corner=19.0, chords=4):
 
 
 def make_scene(bodies=(), circles=(), walls=(), slots=None, capacity=None, size=(480.0, 360.0), **settings):
-    """A scene with bodies at (n, 2) places, circles at (m, 2) places and walls (k, 4).
+    """A scene with bodies at places (n, 2), circles at places (m, 2) and walls (k, 4).
 
-    `slots[i]` is where body i lives; `settings` override `CONFIG`, or give `pair_limit`, `outer_walls`, and
-    `classes`: first slot, radius and density of each further class of bodies.
+    `slots[i]` is the slot of body i; `settings` override `CONFIG`, or give `pair_limit`, `outer_walls`, and `classes`:
+    first slot, radius and density of each additional class of bodies.
     """
     bodies = np.asarray(bodies, dtype=np.float32).reshape(-1, 2)
     circles = np.asarray(circles, dtype=np.float32).reshape(-1, 2)
@@ -101,7 +101,7 @@ def drive(scene, left, right, slots: Any = slice(None)):
 
 
 def random_drive(scene, steps, seed, slots, period=20):
-    """Yields 0, 1, …, steps - 1, each time with motor forces set; drawn anew every `period` steps."""
+    """Yields 0, 1, …, steps - 1, each time with motor forces set; they are redrawn every `period` steps."""
     rng = np.random.default_rng(seed)
     for start in range(0, steps, period):
         forces = rng.uniform(-20.0, 80.0, (2, len(slots)))

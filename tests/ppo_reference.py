@@ -1,4 +1,4 @@
-"""PPO once more, in plain NumPy and float64: the judge of the kernels. Source: Schulman et al. (2017)."""
+"""PPO in plain NumPy and float64, the reference for the kernels. Source: Schulman et al. (2017)."""
 
 from __future__ import annotations
 
@@ -54,13 +54,13 @@ def losses(params: np.ndarray, x: np.ndarray, sample: tuple[np.ndarray, ...], se
 
 
 def loss(params: np.ndarray, x: np.ndarray, sample: tuple[np.ndarray, ...], settings: dict[str, Any]) -> float:
-    """The number that the gradient belongs to."""
+    """The loss whose gradient is `gradient`."""
     policy, value, entropy = losses(params, x, sample, settings)
     return policy + settings["value_coef"] * value - settings["entropy_coef"] * entropy
 
 
 def gradient(params: np.ndarray, x: np.ndarray, sample: tuple[np.ndarray, ...], settings: dict[str, Any]):
-    """The derivative of `loss` by every parameter, by the chain rule."""
+    """The derivative of `loss` with respect to every parameter, by the chain rule."""
     action, old_log_prob, advantage, target = sample
     count = len(x)
     p = split(params, x.shape[1])
@@ -87,7 +87,7 @@ def gradient(params: np.ndarray, x: np.ndarray, sample: tuple[np.ndarray, ...], 
 
 
 class Adam:
-    """Adam as Kingma and Ba (2015) print it, algorithm 1."""
+    """Adam, following algorithm 1 of Kingma and Ba (2015)."""
 
     def __init__(self, settings: dict[str, Any], size: int) -> None:
         self.settings = settings
@@ -112,7 +112,7 @@ def update(
     order: np.ndarray,
     settings: dict[str, Any],
 ) -> tuple[np.ndarray, np.ndarray]:
-    """All epochs and minibatches; returns the parameters and the mean losses of the last epoch."""
+    """Runs all epochs and minibatches; returns the parameters and the mean losses of the last epoch."""
     adam = Adam(settings, len(params))
     size = settings["minibatch_size"]
     seen = []

@@ -1,4 +1,4 @@
-"""The files of the project, as its tests of the repository see them: also in an unpacked archive, where git is not."""
+"""The files of the project for the repository tests, which also work in an unpacked archive, without git."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,7 +8,7 @@ IGNORED = {".git", *(line.rstrip("/") for line in (ROOT / ".gitignore").read_tex
 
 
 def project_files(*suffixes: str) -> list[Path]:
-    """The files whose names end with one of the suffixes, in the folders that `.gitignore` does not name."""
+    """Files whose names end with one of the suffixes, outside the folders listed in `.gitignore`."""
     return sorted(path for path in _walk(ROOT) if path.name.endswith(suffixes))
 
 

@@ -1,4 +1,4 @@
-"""Rays once more, in plain Python and float64: the judge of the kernels."""
+"""Rays in plain Python and float64, the reference for the kernels."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Scene:
 
 
 def circle_distance(x: float, y: float, radius: float, dx: float, dy: float, start: float) -> float | None:
-    """From the ray's start to the circle; 0 inside it; None where it is missed."""
+    """Distance from the ray's start to the circle; 0 inside it; None if the ray misses it."""
     aside = dx * y - dy * x
     if abs(aside) > radius:
         return None
@@ -31,7 +31,7 @@ def circle_distance(x: float, y: float, radius: float, dx: float, dy: float, sta
 
 
 def segment_distance(ax: float, ay: float, bx: float, by: float, dx: float, dy: float, start: float) -> float | None:
-    """From the ray's start to the segment; 0 if it is crossed before the start; None where it is missed."""
+    """Distance from the ray's start to the segment; 0 if crossed before the start; None if the ray misses it."""
     ex, ey = bx - ax, by - ay
     across = dx * ey - dy * ex
     if across == 0.0:
@@ -60,7 +60,7 @@ def cast(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def is_delicate(scene: Scene) -> np.ndarray:
-    """Rays that nearly touch a circle's rim or a segment's end, or end at a hit: rounding decides there."""
+    """Marks rays that nearly touch a circle's rim or a segment's end, or end at a hit, so that rounding decides."""
     dx, dy = scene.direction.astype(np.float64).T[:, :, None]
     x, y, radius = scene.circles.astype(np.float64).T[:, None, :]
     rim = np.abs(radius**2 - (dx * y - dy * x) ** 2) < 0.05

@@ -1,4 +1,4 @@
-"""One step of a simulation against the rules in plain Python."""
+"""Compares one step of a simulation with the rules in plain Python."""
 
 import math
 
@@ -24,20 +24,20 @@ from hedon.experiment.simulation import Simulation
 from hedon.record.schema import CAUSES
 
 OUTPUT = 2e-5
-"""Sums of a hundred products, of which the energy's are as large as 40, in another order, and tanh to 1e-6."""
+"""Sums of a hundred products, up to 40 for energy, added in a different order, and tanh accurate to 1e-6."""
 LARGE_OUTPUT = 5e-6
-"""The same for networks with large weights: a share of the products that they add up, which may cancel out."""
+"""The same for networks with large weights, as a share of the summed products, which may cancel out."""
 SENSE = 3e-6
-"""Sums of a hundred smells, each of which rounds by 6e-8."""
+"""Sums of a hundred smells, each rounded by 6e-8."""
 
 
 class Judge:
-    """Compares a simulation with its model, step by step, and counts what happened."""
+    """Compares a simulation with its model step by step, and counts events."""
 
     def __init__(self, simulation: Simulation, seed: int) -> None:
         self.simulation, self.model = simulation, Model(simulation.config, seed)
         species = self.model.rules.species
-        # Genes may multiply forces and costs by up to this.
+        # Genes can multiply forces and costs by at most this factor.
         genes = [(gene, own.limit) for each in species for gene, own in zip(each.genes, each.mutations, strict=True)]
         set_by = {"g_" + path.replace(".", "_") for each in species for path in each.genome.set}
         stretch = 10 ** max((limit for gene, limit in genes if gene in set_by), default=0.0)
@@ -53,13 +53,13 @@ class Judge:
             self.happened[name] = self.happened.get(name, 0) + number
 
     def begin(self) -> None:
-        """Asserts that the world begins as the rules say."""
+        """Asserts that the initial world follows the rules."""
         self.assert_same(self.model.found(), 0.0)
         found = [np.reshape(each, (-1, 2)) for each in self.model.rules.arena.obstacles]
         assert_close(np.reshape(self.simulation.worlds[0].obstacles, (-1, 2)), np.reshape(found, (-1, 2)), PLACE)
 
     def step(self) -> None:
-        """Makes one step and asserts that it followed the rules."""
+        """Advances by one step and asserts that it followed the rules."""
         simulation, world = self.simulation, self.simulation.worlds[0]
         before, slots, foods = read_world(simulation), world.living.tolist(), food_slots(simulation)
         observations = self.observations(before)
@@ -85,7 +85,7 @@ class Judge:
         self.count(**assert_touches(simulation, self.model.rules, before, slots, deeds))
 
         expected = self.model.advance(before, deeds)
-        # Where one ended whose slot has a newborn is not known, so neither is what it was to its neighbors.
+        # If a newborn took an agent's slot, the agent's final place is unknown, and so are rewards that depend on it.
         replaced = any(deed.replaced for deed in deeds)
         unsure = [replaced and is_paid_by_place(self.model.rules.of(agent), others=True) for agent in before.agents]
         ids = frozenset(agent.agent_id for agent, each in zip(before.agents, unsure, strict=True) if each)
@@ -108,7 +108,7 @@ class Judge:
         assert_same_world(actual, expected, costs, self.force, self.model.rules.inherits_late, unsure)
 
     def note(self, before: World, expected: Outcome) -> None:
-        """Counts what happened, so that a case can say that what it is there for did."""
+        """Counts events, so that a case can assert that the events it tests occurred."""
         rules, turns = self.model.rules, expected.turns
         met = [food for turn in turns for food in turn.deed.mouthfuls]
         hungry = [turn for turn in turns if turn.start.digestion == 0 and turn.deed.prey and not turn.starved]
@@ -136,20 +136,20 @@ class Judge:
             self.count(**{f"paid_{name}": value != 0 for name, value in inputs(rules, before, turn).items()})
 
     def observations(self, before: World) -> list[np.ndarray]:
-        """What each agent observes now, in the order of their ids."""
+        """What each agent observes now, in order of id."""
         rows = [iter(self.simulation.worlds[0].observations(s)) for s in range(len(self.model.rules.species))]
         found = [next(rows[agent.species]) for agent in before.agents]
         assert all(next(rest, None) is None for rest in rows)
         return found
 
     def sight(self, agent: Agent, observation: np.ndarray) -> np.ndarray:
-        """What the rays of an agent read, (rays, types that it sees)."""
+        """Ray readings of an agent, (rays, types that it sees)."""
         species = self.model.rules.of(agent)
         rays, sees = species.sensor.ray_count, len(species.sees)
         return observation[: rays * sees].reshape(sees, rays).T.astype(float)
 
     def assert_observations(self, before: World, slots: list[int], observations: list[np.ndarray]) -> None:
-        """All of an observation but rays: touch is that of the state, the rest follows from the rules."""
+        """Checks observations except rays: touch must match the state, the rest must follow from the rules."""
         world, rules = self.simulation.worlds[0], self.model.rules
         touch = touch_bits(world, slots)
         names = ("velocity_x", "velocity_y", "angular_velocity")
@@ -168,7 +168,7 @@ class Judge:
             self.count(smelled=bool(np.any(smelled > 0.1)))
 
     def assert_networks_act(self, before: World, slots: list[int], observations: list, params: np.ndarray) -> None:
-        """Actions, their log-probabilities and the values follow from the observations and the networks."""
+        """Checks that actions, log-probabilities and values follow from the observations and the networks."""
         rows = (
             rollout_rows(self.simulation, before, slots, name, width)
             for name, width in (("action", 2), ("log_prob", 1), ("value", 1))
@@ -193,7 +193,7 @@ class Judge:
             self.count(**{f"acts_{learning.policy}_{learning.acting_weights}": 1})
 
     def assert_newborn_networks(self, before: World, params: np.ndarray) -> None:
-        """A newborn has its parent's network with noise, as its species says, or a new one; genes set its spread."""
+        """Checks that newborns have a noisy copy of the parent's network or a new one; genes may set the spread."""
         world = self.simulation.worlds[0]
         old = {agent.agent_id: i for i, agent in enumerate(before.agents)}
         for slot, child in zip(world.living.tolist(), read_world(self.simulation).agents, strict=True):
@@ -228,7 +228,7 @@ class Judge:
 
 
 def command(simulation: Simulation) -> None:
-    """Now and then tells the agents that are told what to do something else."""
+    """From time to time, gives externally controlled agents new actions."""
     step = simulation.worlds[0].step
     for s, species in enumerate(simulation.config.species.values()):
         if species.learning.policy == "external" and step % 7 == 0:
@@ -237,7 +237,7 @@ def command(simulation: Simulation) -> None:
 
 
 def _held(rules: Rules, world: World) -> dict[str, float]:
-    """How often a store weakens motors, and how often stores beside energy are full, and empty."""
+    """Counts stores above 1 that weaken the motors, and stores other than energy that are full or empty."""
     held = [(agent.store[name], each) for agent in world.agents for name, each in rules.of(agent).store.items()]
     return {
         "poisoned": sum(amount > 1 for amount, store in held if store.motor_threshold),
@@ -247,13 +247,13 @@ def _held(rules: Rules, world: World) -> dict[str, float]:
 
 
 def _kin(rules: Rules, world: World) -> int:
-    """How many kin queries find."""
+    """How many kin the neighbor queries find."""
     asked = ((agent, query) for agent in world.agents for query in rules.of(agent).neighbor.values())
     return sum(int(neighbors(rules, world, agent, query)["kin"]) for agent, query in asked)
 
 
 def _overlaps(rules: Rules, world: World) -> int:
-    """Pairs of agents that lie in one another."""
+    """Number of pairs of agents that overlap."""
     count = 0
     for i, one in enumerate(world.agents):
         for other in world.agents[:i]:
@@ -263,5 +263,5 @@ def _overlaps(rules: Rules, world: World) -> int:
 
 
 def network_size(inputs: int) -> int:
-    """Parameters of a network."""
+    """Number of parameters of a network."""
     return HIDDEN * (inputs + 1) + HIDDEN * HIDDEN + AFTER_W2

@@ -1,4 +1,4 @@
-"""Pages of results, the tables beside them, and numbers as the pages write them."""
+"""Pages of results, the tables that accompany them, and numbers formatted as on the pages."""
 
 from pathlib import Path
 from typing import Any
@@ -19,14 +19,14 @@ def table(path: str) -> pl.DataFrame:
 
 
 def text(value: float, digits: int, sign: bool = False) -> str:
-    """A number as pages show it: with a true minus, and nothing before a rounded 0."""
+    """A number as shown on the pages: with a true minus sign, and no sign before a rounded 0."""
     shown = f"{value:{'+' if sign else ''}.{digits}f}"
     shown = shown.lstrip("-+") if float(shown) == 0 else shown
     return shown.replace("-", "\N{MINUS SIGN}")
 
 
 def span(values: np.ndarray, digits: int = 3, sign: bool = True) -> str:
-    """Mean and 95 % interval by Student's t."""
+    """Mean and 95% confidence interval from Student's t."""
     bounds = stats.ttest_1samp(values, 0).confidence_interval()
     low, high = text(bounds.low, digits), text(bounds.high, digits)
     return f"{text(values.mean(), digits, sign)} ({low} … {high})"
@@ -38,17 +38,17 @@ def p_of(values: np.ndarray) -> float:
 
 
 def p_text(p: float) -> str:
-    """A p as pages show it: two digits, below 0.01 one more, and four below 0.001."""
+    """A p value as shown on the pages: with two decimals, three below 0.0095, four below 0.001."""
     return f"{p:.4f}" if p < 0.001 else f"{p:.3f}" if p < 0.0095 else f"{p:.2f}"
 
 
 def small(p: float) -> str:
-    """A p, of which more than four digits are not told."""
+    """A p value with at most four decimals."""
     return "< 0.0001" if p < 0.0001 else p_text(p)
 
 
 def shares(name: str) -> np.ndarray:
-    """Of each world of a contest, the share of the first group at the end, less one half."""
+    """For each world of a contest, the first group's final share minus one half."""
     worlds = table(f"compete/{name}/tables/contest_world.csv")
     first, second = (worlds[column].to_numpy() for column in worlds.columns[1:3])
     return first / (first + second) - 0.5

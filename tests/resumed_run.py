@@ -1,4 +1,4 @@
-"""Small runs that are stopped and resumed, and how two of them are compared."""
+"""Small runs to stop and resume, and a comparison of two runs."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -39,13 +39,13 @@ def small_run(
     checkpoint_seconds: float = 1e9,
     backend: str = "",
 ) -> Manifest:
-    """Runs a small baseline; with the default interval it keeps a checkpoint at its start and at its end."""
+    """Runs a small baseline; with the default interval, it saves checkpoints only at the start and the end."""
     config = load_config("baseline", overrides=(*SMALL, *overrides))
     return run(RunPlan(config, seeds, steps, out, 1, frames, checkpoint_seconds, backend=backend))
 
 
 def assert_same_run(folder: Path, other: Path) -> None:
-    """Two runs recorded the same, row for row and bit for bit, and ended in the same state."""
+    """Asserts that two runs recorded the same, row by row and bit by bit, and ended in the same state."""
     a, b = open_run(folder), open_run(other)
     assert a.manifest.world_digests == b.manifest.world_digests
     assert a.manifest.records_digest == b.manifest.records_digest is not None
@@ -58,7 +58,7 @@ def assert_same_run(folder: Path, other: Path) -> None:
 
 
 def filler(arrays: Mapping[str, NDArray[Any]]) -> Fill:
-    """What fills a checkpoint with these arrays, by name."""
+    """A function that fills a checkpoint with these arrays, by name."""
 
     def fill(out: ArrayWriter) -> None:
         for name, array in arrays.items():

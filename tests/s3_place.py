@@ -1,4 +1,4 @@
-"""A server of S3 on this machine, as all find it that read the environment."""
+"""A local S3 server, configured through environment variables."""
 
 from importlib import import_module
 from typing import Any
@@ -9,10 +9,10 @@ KEY = "hedon-test-key"
 
 
 def use_server(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Names the server that listens at a port to this process and to those that it starts.
+    """Points this process and its child processes to the server that listens on a port.
 
-    fsspec reads the environment when it is imported, and keeps its file systems: what it has from the server of an
-    earlier test is forgotten.
+    fsspec reads the environment on import and caches its file systems, so those from the server of an earlier test are
+    cleared.
     """
     address = f"http://127.0.0.1:{port}"
     for name, value in {

@@ -1,4 +1,4 @@
-"""Whether two worlds of the reference model are the same, but for how the engine rounds.
+"""Compares two worlds of the reference model, up to the rounding of the engine.
 
 The engine holds places, forces and rewards in float32, the reference in float64.
 """
@@ -10,18 +10,18 @@ import pytest
 from reference.state import Agent, World
 
 PLACE = 1e-4
-"""Places below 1000 u round by 3e-5 u, and so do the products and normals that they are made of."""
+"""Places below 1000 u round by 3e-5 u, as do the products and normals from which they are computed."""
 ANGLE = 1e-6
 """Angles below 2π round by 2.4e-7 rad, twice."""
 FORCE = 5e-7
-"""Share of the largest force: forces round by 6e-8 of it, four times on the way to their norm."""
+"""Share of the largest force: forces round by 6e-8 of it, four times up to their norm."""
 WEIGHT = 1e-6
-"""Weights below 10 round by 5e-7; noise of up to 20 once more."""
+"""Weights below 10 round by 5e-7; noise of up to 20 rounds once more."""
 REWARD = 2e-6
-"""Share of the largest weights: rewards round with them, a few times."""
+"""Share of the largest weights: rewards round in proportion to them, a few times."""
 
 MEASURED = ("x", "y", "angle", "genome", "distance", "force_left", "force_right", "reward")
-"""What of an agent rounds in other ways than energy does."""
+"""Fields of an agent that round differently from energy."""
 EXACT = (
     *("agent_id", "species", "parent_id", "mate_id", "generation", "birth_step", "children", "eaten"),
     *("digestion", "ready_until", "resident_slot", "births"),
@@ -31,14 +31,14 @@ assert {*MEASURED, *EXACT, *STORED, "memory", "last"} == {each.name for each in 
 
 
 def assert_close(actual, expected, tolerance, share=1e-12):
-    """As `np.testing.assert_allclose`, but much quicker where nothing is wrong."""
+    """Like `np.testing.assert_allclose`, but much faster if nothing is wrong."""
     one, other = np.asarray(actual, float), np.asarray(expected, float)
     if one.shape != other.shape or not np.all(np.abs(one - other) <= tolerance + share * np.abs(other)):
         np.testing.assert_allclose(one, other, rtol=share, atol=tolerance)
 
 
 def column(world: World, name: str) -> np.ndarray:
-    """A field of all agents; where each has several numbers, one agent's after another's."""
+    """A field of all agents; if it has several numbers per agent, they are concatenated."""
     values = [getattr(agent, name) for agent in world.agents]
     if name == "store":
         values = [np.array(list(each.values()), float) for each in values]
@@ -48,8 +48,8 @@ def column(world: World, name: str) -> np.ndarray:
 def assert_same_world(
     actual: World, expected: World, costs: float, force: float, late: bool, unsure: frozenset[int] = frozenset()
 ) -> None:
-    """Compares two worlds: `costs` and `force` are how far costs and forces may differ, `late` says whether genomes of
-    vacancies matter, `unsure` has the ids of agents whose rewards are not known."""
+    """Asserts that two worlds are the same: `costs` and `force` are tolerances for costs and forces, `late` is whether
+    genomes of vacancies matter, and `unsure` holds the ids of agents whose rewards are unknown."""
     for name in ("step", "next_agent_id", "births_in_window", "births_before"):
         assert getattr(actual, name) == getattr(expected, name), name
     counts = all(agent.births is not None for agent in actual.agents)

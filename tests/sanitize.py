@@ -1,6 +1,6 @@
 """Builds the engine with sanitizers and runs tests on it: `python tests/sanitize.py asan|tsan [PYTEST ARGUMENTS]`.
 
-With `--cuda` instead of pytest's arguments, windows of the emulated CUDA kernels: see `cuda_windows.py`.
+With `--cuda` instead of pytest arguments, it runs windows of the emulated CUDA kernels: see `cuda_windows.py`.
 """
 
 import os
@@ -19,26 +19,26 @@ TESTS = {
         "tests/crosscheck/test_sensor.py",
         "tests/property/test_world.py",
         "tests/property/test_untrusted_checkpoint.py",
-        # What is refused before the engine sees it.
+        # Its input is refused before it reaches the engine.
         "--deselect=tests/property/test_untrusted_checkpoint.py::test_every_array_is_checked",
         "tests/physics",
     ],
     "tsan": ["tests/contract/test_determinism.py"],
 }
 OPTIONS = {
-    # The interpreter itself never frees everything, and its own threads are not what is tested here.
+    # The interpreter itself never frees everything, and its own threads are not under test.
     "ASAN_OPTIONS": "detect_leaks=0:halt_on_error=1:abort_on_error=0",
     "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
-    # Deadlocks of mutexes are not looked for: the engine has none, and the allocator of Polars has more than the
+    # Mutex deadlocks are not checked: the engine has no mutexes, and the allocator of Polars has more than the
     # sanitizer can count.
     "TSAN_OPTIONS": "halt_on_error=1:exitcode=66:detect_deadlocks=0",
-    # That allocator also starts a thread that the sanitizer knows nothing of, and crashes with.
+    # That allocator also starts a thread that is unknown to the sanitizer and makes it crash.
     "_RJEM_MALLOC_CONF": "background_thread:false",
 }
 
 
 def build(preset: str) -> Path:
-    """Builds the extension module with a preset of CMakePresets.json and returns its path."""
+    """Builds the extension module with a preset from CMakePresets.json and returns its path."""
     configure = ["cmake", "--preset", preset, f"-DPython_EXECUTABLE={sys.executable}"]
     subprocess.run(configure, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     folder = ROOT / "build" / preset
@@ -47,7 +47,7 @@ def build(preset: str) -> Path:
 
 
 def runtime(name: str) -> str:
-    """Path of a sanitizer's runtime library, as the compiler knows it."""
+    """Path of a sanitizer's runtime library, according to the compiler."""
     return subprocess.run(
         ["g++", f"-print-file-name={name}"], capture_output=True, text=True, check=True
     ).stdout.strip()

@@ -1,4 +1,4 @@
-"""The page of settings read back, and a config taken apart, without the programs that write them."""
+"""Parses the page of settings and flattens a config, independently of the code that writes them."""
 
 import re
 import tomllib
@@ -12,7 +12,7 @@ PAGE = Path(__file__).parents[1] / "docs" / "config.md"
 
 
 class Row(NamedTuple):
-    """What the page prints of one setting."""
+    """One setting as shown on the page."""
 
     default: Any
     meaning: str
@@ -22,7 +22,7 @@ class Row(NamedTuple):
 
 
 def page_rows(kinds: dict[str, str]) -> dict[str, Row]:
-    """Rows of the page by the path of the setting; `kinds` has a path for each section of a `<kind>`."""
+    """Rows of the page by setting path; `kinds` has a path for each section with a `<kind>`."""
     found, section = {}, None
     for line in PAGE.read_text(encoding="utf-8").splitlines():
         if line.startswith("## "):
@@ -38,7 +38,7 @@ def page_rows(kinds: dict[str, str]) -> dict[str, Row]:
 
 
 def values(part: Any, path: str = "") -> dict[str, Any]:
-    """Each value of a config by its path in a file of one species, lists for tuples."""
+    """Each value of a config by its path in a single-species file, with lists for tuples."""
     inner = part.items() if isinstance(part, dict) else ((each.name, getattr(part, each.name)) for each in fields(part))
     found = {}
     for name, value in inner:

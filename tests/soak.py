@@ -1,7 +1,8 @@
-"""Runs worlds at the edge of what settings allow for many steps, looked over at the end of each window.
+"""Runs worlds with extreme settings for many steps, with a check at the end of each window.
 
-`python tests/soak.py [--steps N] [--only NAME]` runs N steps in all, a million by default, shared out to the settings.
-It ends with the first violation, which the engine names; where a world dies out, one of the next seed goes on.
+`python tests/soak.py [--steps N] [--only NAME]` runs N steps in total, a million by default, divided among the
+settings. It stops at the first violation, which the engine reports. A world that dies out is followed by one with the
+next seed.
 """
 
 import argparse
@@ -27,7 +28,7 @@ SETTINGS = {
 
 
 def soak(name: str, steps: int) -> None:
-    """Runs a setting for so many steps, over as many worlds as it takes."""
+    """Runs a setting for this many steps, in as many worlds as it takes."""
     preset, overrides = SETTINGS[name]
     window = load_config(preset).world.rollout_steps
     begun, done, seed, most = time.perf_counter(), 0, 0, 0

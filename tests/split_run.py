@@ -1,4 +1,4 @@
-"""Runs whose steps go on from part to part, as older versions wrote them: wherever a part was full."""
+"""Runs in which a step can span two parts, as in older versions, which started a new part wherever one was full."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -18,7 +18,7 @@ FRAMES = 32
 def record_species(
     folder: Path, steps: int = 256, seeds: tuple[int, ...] = (1, 2), overrides: Sequence[str] = ()
 ) -> Path:
-    """Records prey and predators, with a row of the population each 64 steps."""
+    """Records prey and predators, with a population row every 64 steps."""
     quick = ("world.rollout_steps=64", "learning.minibatch_size=64")
     config = load_config("predator", overrides=[*quick, *overrides])
     run(RunPlan(config, seeds, steps, folder, 1, FRAMES))
@@ -26,7 +26,7 @@ def record_species(
 
 
 def split_parts(folder: Path, table: str, rows: int) -> int:
-    """Writes a table again with so many rows in each part; returns how many steps go on in a next part."""
+    """Rewrites a table with this many rows per part; returns how many steps continue in the next part."""
     paths = part_paths(folder, table)
     whole = pl.concat([pl.read_parquet(path) for path in paths])
     for path in paths:

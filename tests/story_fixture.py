@@ -1,4 +1,4 @@
-"""A plugin of pytest: the article, open at a scene."""
+"""A pytest plugin that opens the article at a scene."""
 
 import pytest
 from story_page import STAGES, stage
@@ -15,7 +15,7 @@ def story_site():
 
 @pytest.fixture
 def article(story_site, watch):
-    """Opens the article, at a scene or at the address of a link; what is given by name is of Playwright's context."""
+    """Opens the article at a scene or a link's address; keyword arguments go to Playwright's context."""
 
     def open_at(scene, address="", **how):
         watched = watch(f"{story_site.link}{PAGE}{address}", **how)

@@ -1,4 +1,4 @@
-"""A sweep of small worlds, and how two are compared."""
+"""A sweep of small worlds, and a comparison of two sweeps."""
 
 import io
 import json
@@ -42,7 +42,7 @@ class Silent:
 
 
 def sweep_file(folder: Path, steps: int = 320, seeds: int = 2, worlds: int = 2, rest: str = FACTORS) -> Path:
-    """Writes the file of a sweep of small worlds."""
+    """Writes the file for a sweep of small worlds."""
     path = folder / "small.toml"
     fixed = "\n".join(SMALL)
     path.write_text(f"steps = {steps}\nseeds = {seeds}\nworlds = {worlds}\n[set]\n{fixed}\n{textwrap.dedent(rest)}")
@@ -50,13 +50,13 @@ def sweep_file(folder: Path, steps: int = 320, seeds: int = 2, worlds: int = 2, 
 
 
 def planned(file: Path, location: str) -> tuple[SweepPlan, Store]:
-    """The plan of a file, written to a place."""
+    """The plan of a sweep file, written to a location."""
     store = Store(location)
     return write_plan(read_sweep(file), store), store
 
 
 def condition_configs(file: SweepFile) -> list[Config]:
-    """The config of each condition, from its base and what it changes."""
+    """The config of each condition: its base with its changes."""
     plan = file.plan
     return [rebuild(file.bases[each.base].config, plan.changes(each), "") for each in plan.conditions]
 
@@ -75,19 +75,19 @@ def run_sweep(
     ray: str | None = None,
     display: JobListener | None = None,
 ) -> dict[str, Outcome]:
-    """How each batch that was open ended, by name."""
+    """Makes all open batches; returns the outcome of each, by name."""
     with batch_jobs(plan, store, checkpoint_seconds, on_cluster=ray is not None) as jobs:
         outcomes = make_jobs(jobs, display or Silent(), workers, ray)
     return {folder.name: outcome for folder, outcome in outcomes.items()}
 
 
 def under_way(place: Path) -> dict[str, tuple[int, int]]:
-    """The process of each batch that is under way, and the step of its last checkpoint."""
+    """The process and the last checkpoint's step of each batch in progress."""
     found = {}
     for lock in (place / WORK).glob("*/.lock"):
         try:
             process = json.loads(lock.read_text())["process"]
-        except (OSError, ValueError):  # it has just begun, or ended
+        except (OSError, ValueError):  # it has just started or ended
             continue
         checkpoints = sorted((lock.parent / "checkpoints").glob("step-*.npz"))
         found[lock.parent.name] = process, int(checkpoints[-1].stem[5:]) if checkpoints else 0
@@ -95,16 +95,16 @@ def under_way(place: Path) -> dict[str, tuple[int, int]]:
 
 
 def assert_same_table(one: pl.DataFrame, other: pl.DataFrame) -> None:
-    """Two sweeps gave the same, bit for bit."""
+    """Asserts that two sweeps gave the same table, bit for bit."""
     assert_frame_equal(one, other, check_exact=True)
 
 
 class MachineDiedError(Exception):
-    """A machine that ends without a word."""
+    """A machine died without notice."""
 
 
 def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
-    """A batch that died on one machine goes on from its state on another, and the table is that of a folder."""
+    """Asserts that a batch that died on one machine continues on another, with the same table as in a folder."""
     file = sweep_file(folder, steps)
     plan, store = planned(file, str(folder / "folder"))
     for batch in plan.batches():
@@ -112,7 +112,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
     remote, far = planned(file, url)
 
     class Stopping:
-        """A machine that dies when a state has been sent."""
+        """A machine that dies after sending a state."""
 
         def update(self, moment: Moment) -> None:
             if moment.step > steps // 2:
@@ -126,13 +126,13 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
     begun: list[int] = []
 
     class Watching:
-        """Another machine, which notes where it goes on."""
+        """Another machine, which records where it continues."""
 
         def update(self, moment: Moment) -> None:
             begun.append(moment.first)
 
     assert batch_job(url, remote, first, folder / "another", 1e9).make(1, Watching().update) == "finished"
-    assert begun[0] > 0, "it was to go on from the state"
+    assert begun[0] > 0, "it should continue from the saved state"
     assert far.names("state") == []
     for batch in remote.batches():
         assert batch_job(url, remote, batch, folder / f"rest-{batch.name}", 1e9).make(1, None) == "finished"
@@ -140,7 +140,7 @@ def assert_goes_on_elsewhere(url: str, folder: Path, steps: int) -> None:
 
 
 def assert_two_make_one(url: str, folder: Path, rest: str = FACTORS) -> None:
-    """Two processes that make one sweep behind a URL at once write the same rows, whichever is first with each."""
+    """Asserts that two processes that run one sweep at a URL concurrently write the same rows as one in a folder."""
     file = sweep_file(folder, 3_200, rest=rest)
     file.write_text('keep = ["agents", "run"]\n' + file.read_text())
     plan, store = planned(file, str(folder / "folder"))
@@ -162,7 +162,7 @@ def assert_two_make_one(url: str, folder: Path, rest: str = FACTORS) -> None:
 
 
 def assert_kept_whole(store: Store, plan: SweepPlan) -> None:
-    """What a sweep behind a URL keeps is whole, and of one process each: the agents of a run are those of its table."""
+    """Asserts that a sweep at a URL keeps complete files, with each batch from one process: run and table agree."""
     for batch in plan.batches():
         table = pl.read_parquet(store.read(f"tables/agents/{batch.name}.parquet") or b"")
         with (

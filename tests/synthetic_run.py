@@ -1,4 +1,4 @@
-"""Makes runs that look like real ones, without an engine: births, deaths, drift, a ledger that closes."""
+"""Creates realistic runs without an engine: births, deaths, drift, and a balanced ledger."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,7 +27,7 @@ STATISTICS = {
 
 @dataclass
 class SyntheticWorld:
-    """One world: `step()` makes an interval and returns the rows of the dead and of the population."""
+    """One world: `step()` simulates an interval and returns the rows of the dead and of the population."""
 
     index: int
     seed: int
@@ -49,7 +49,7 @@ class SyntheticWorld:
             self.living[name] = self.rng.normal(0, 0.1, self.initial_count).astype(np.float32)
 
     def step(self) -> tuple[Rows, dict[str, float]]:
-        """Makes one interval."""
+        """Simulates one interval."""
         rng, living, before = self.rng, self.living, len(self.living["agent_id"])
         counts: dict[str, float] = {"energy_basic": 1e-3 * INTERVAL * before, "energy_eaten": 0.0}
         counts |= {"energy_action": 1e-3 * INTERVAL * before, "energy_forgiven": 0.0, "energy_capped": 0.0}
@@ -77,7 +77,7 @@ class SyntheticWorld:
         return dead, self._row(counts, before)
 
     def living_rows(self) -> Rows:
-        """Rows of the living, whose death_step is missing."""
+        """Rows of the living, without death_step."""
         return {name: values.copy() for name, values in self.living.items()}
 
     def _give_birth(self, counts: dict[str, float]) -> Rows:
@@ -168,9 +168,9 @@ def write_run(
     unsaved: int = 0,
     **options: Any,
 ) -> Path:
-    """Writes a whole run. World `extinct` gets no births and short lives; `options` go to every world.
+    """Writes a whole run. World `extinct` has no births and short lives; `options` apply to every world.
 
-    Agents of the last `unsaved` intervals are missing, as in a run that was killed.
+    Agents of the last `unsaved` intervals are missing, as in a killed run.
     """
     manifest = Manifest(
         food_kinds=food_kinds,
@@ -215,7 +215,7 @@ def write_run(
 
 
 def synthetic_snapshot(food_kinds: tuple[str, ...] = ("normal",), agents: int = 40, rays: int = 24) -> Snapshot:
-    """The last state of a world of 480×360 u; the rays read the walls alone, in closed form."""
+    """The last state of a world of 480×360 u; the rays detect only the walls, computed in closed form."""
     rng = np.random.default_rng(5)
     grid = np.stack(np.meshgrid(np.arange(25, 460, 30), np.arange(25, 340, 30)), axis=-1).reshape(-1, 2)
     count = agents + 12 * len(food_kinds)

@@ -1,4 +1,4 @@
-"""A plugin of pytest: a browser, a run to watch, and pages that may not complain."""
+"""A pytest plugin: a browser, a run to watch, and pages that must not report errors."""
 
 from typing import Any
 
@@ -24,9 +24,9 @@ def run_folder(tmp_path_factory):
 
 @pytest.fixture
 def watch(browser):
-    """Opens links; at the end no page may have complained or asked another host for anything.
+    """Opens links; at the end, no page may have reported an error or sent a request to another host.
 
-    What is given by name is of Playwright's context: `viewport`, `color_scheme`, `has_touch`, `reduced_motion`.
+    Keyword arguments go to Playwright's context: `viewport`, `color_scheme`, `has_touch`, `reduced_motion`.
     """
     opened = []
 

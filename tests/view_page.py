@@ -26,19 +26,19 @@ CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
 SIZE = {"width": 1280, "height": 720}
 SIZES = {1400: 860, 1024: 768, 390: 844}
-"""Widths of pages, of a desk, a tablet and a phone, and their heights."""
+"""Page widths of a desktop, a tablet and a phone, and their heights."""
 GROUNDS = ("light", "dark")
 
 
 def record(folder: Path, steps: int) -> Path:
-    """Records a run with two kinds of food and a frame each 64 steps."""
+    """Records a run with two kinds of food and a frame every 64 steps."""
     run(RunPlan(load_config("poison"), (1,), steps, folder, 1, 64))
     return folder
 
 
 @contextmanager
 def serving(server: Any) -> Iterator[Any]:
-    """A server in a thread of its own."""
+    """Runs a server in a separate thread."""
     thread = threading.Thread(target=server.serve_forever, args=(0.05,), daemon=True)
     thread.start()
     try:
@@ -50,14 +50,14 @@ def serving(server: Any) -> Iterator[Any]:
 
 
 def run_server(folder: Path, *others: Path) -> Server:
-    """What `hedon view RUN [OTHER...]` serves."""
+    """A server like that of `hedon view RUN [OTHER...]`."""
     index = RunIndex(folder, others)
     page = {"run": True, "worlds": [live_world(load_config("poison"), "poison")]}
     return Server({"page": lambda: page, "run": index.describe}, index.files)
 
 
 def live_server(source: str) -> Server:
-    """What `hedon view --live SOURCE` serves, without the presets after it, which take seconds to describe."""
+    """A server like that of `hedon view --live SOURCE`, without the other presets, which take seconds to describe."""
     page = {"run": False, "worlds": [live_world(load_config(source), source)]}
     return Server({"page": lambda: page}, dict)
 
@@ -68,12 +68,12 @@ class _Quiet(http.server.SimpleHTTPRequestHandler):
 
 
 def site_server(site: Path) -> http.server.ThreadingHTTPServer:
-    """A server that knows nothing of the page: it sends the files of a folder, and no headers for them."""
+    """A generic server: it sends the files of a folder, without special headers."""
     return http.server.ThreadingHTTPServer(("127.0.0.1", 0), partial(_Quiet, directory=site))
 
 
 def demo_server() -> http.server.ThreadingHTTPServer:
-    """A site of a long run with sparse frames, as `hedon view RUN --export` writes it; made once for each process."""
+    """A server for the `hedon view RUN --export` site of a long run with sparse frames, made once per process."""
     return site_server(_demo_site())
 
 
@@ -90,7 +90,7 @@ def _demo_site() -> Path:
 
 
 class Watched:
-    """A page of the browser, with everything that it complained about or asked of others."""
+    """A browser page that records its errors and its requests to other hosts."""
 
     def __init__(self, page: Any, link: str) -> None:
         self.page = page
@@ -107,18 +107,18 @@ class Watched:
             self.faults.append(f"asked {url}")
 
     def until(self, condition: str, seconds: float = 120.0) -> None:
-        """Waits; by asking again and again, since the page's policy allows no code from strings."""
+        """Waits by polling, since the page's security policy forbids code from strings."""
         end = time.monotonic() + seconds
         while not self.page.evaluate(f"!!({condition})"):
             assert time.monotonic() < end, f"never: {condition}; {self.faults}"
             time.sleep(0.05)
 
     def get(self, code: str) -> Any:
-        """The value of an expression in the page."""
+        """The value of an expression evaluated in the page."""
         return self.page.evaluate(code)
 
     def rest_at(self, step: int) -> None:
-        """Stops at a step of the records and waits until it is drawn."""
+        """Stops at a recorded step and waits until it is drawn."""
         self.get(f"(hedon.play(false), hedon.seek({step}))")
         self.until(f"hedon.frame && hedon.frame.step === {step}")
         drawn = self.get("hedon.pictures")
@@ -126,19 +126,19 @@ class Watched:
 
 
 def numbers(text: str) -> list[float]:
-    """The numbers in a text of the page, which have commas and a true minus sign."""
+    """The numbers in a text of the page, written with commas and a true minus sign."""
     assert not re.search(r"(?<![\w-])-\d", text), f"a hyphen before a number: {text}"
     found = re.findall(r"\N{MINUS SIGN}?\d[\d,]*\.?\d*", text)
     return [float(each.replace(",", "").replace("\N{MINUS SIGN}", "-")) for each in found]
 
 
 def sized(width: int, ground: str = "light") -> dict[str, Any]:
-    """A browser of one of the `SIZES`: the phone has a touch screen."""
+    """Browser options for one of the `SIZES`; the phone has a touch screen."""
     return {"viewport": {"width": width, "height": SIZES[width]}, "color_scheme": ground, "has_touch": width == 390}
 
 
 def run_live(watched: Watched, steps: int) -> None:
-    """Lets a live world do its first steps, and learn."""
+    """Lets a live world run its first steps and learn."""
     watched.get("hedon.play(false)")
     watched.until("!hedon.source.busy")
     while (done := watched.get("hedon.source.last")) < steps or watched.get("hedon.source.learning"):
@@ -148,6 +148,6 @@ def run_live(watched: Watched, steps: int) -> None:
 
 
 def story_server() -> Server:
-    """What `hedon view --story` serves, without the presets of the instrument, which take seconds to describe."""
+    """A server like that of `hedon view --story`, without the instrument's presets, which take seconds to describe."""
     told = story()
     return Server({"page": lambda: {"run": False, "worlds": []}, "story": lambda: told}, dict)

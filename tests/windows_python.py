@@ -1,6 +1,6 @@
-"""Python for Windows under Wine, with the wheel of this tree and what it needs.
+"""Python for Windows under Wine, with the wheel of this tree and its dependencies.
 
-Two libraries are made here: `python3.dll`, which the package of Python lacks, and `bcryptprimitives.dll`, which Wine
+Two libraries are built here: `python3.dll`, which the Python package lacks, and `bcryptprimitives.dll`, which Wine
 lacks before version 9. NumPy is 1.26, since NumPy 2 calls functions that Wine lacks before version 10.
 """
 
@@ -23,7 +23,7 @@ VERSION = "3.11"
 NEEDS = ("numpy<2", "hypothesis", "pandas", "psutil", "pyarrow", "pytest")
 LIBRARY = ("cc", "-target", "x86_64-windows-gnu", "-shared", "-fno-sanitize=undefined")
 MEMBER = 60
-"""Bytes before a member of an archive (ar); its length stands in the eight from the 48th on."""
+"""Size of the header of a member of an archive (ar); ten bytes at offset 48 hold the member's length."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class WindowsPython:
     """A Python for Windows.
 
     Attributes:
-        home: where `python.exe` is.
-        site: where its packages are.
-        prefix: what Wine takes for its disk C.
+        home: Folder of `python.exe`.
+        site: Folder of its packages.
+        prefix: Wine prefix, which holds drive C.
     """
 
     home: Path
@@ -41,7 +41,7 @@ class WindowsPython:
     prefix: Path
 
     def run(self, *arguments: str, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
-        """What a call of Python says, as text. Standard input is a pipe: Wine's Python takes no device for it."""
+        """Calls Python and captures its output as text. Standard input is a pipe: under Wine, it cannot be a device."""
         variables = {
             "WINEPREFIX": str(self.prefix),
             "WINEDEBUG": "-all",
@@ -60,19 +60,19 @@ class WindowsPython:
         )
 
     def hedon(self, *arguments: str, folder: Path) -> str:
-        """What a command prints that must succeed."""
+        """Runs a command that must succeed, and returns its output."""
         answer = self.run("-c", "from hedon.cli.start import main; main()", *arguments, folder=folder)
         assert answer.returncode == 0, answer.stdout + answer.stderr
         return answer.stdout
 
 
 def windows_path(path: Path) -> str:
-    """How Windows calls a path of this machine."""
+    """The Windows form of a path on this machine."""
     return "Z:" + str(path).replace("/", "\\")
 
 
 def make_windows_python(folder: Path) -> WindowsPython:
-    """Python for Windows in a folder, with the wheel of this tree; skips the test where something is not at hand."""
+    """Installs Python for Windows in a folder, with the wheel of this tree; skips the test if anything is missing."""
     need(MACHINES["x86_64-windows"])
     try:
         package = fetch_python("windows", VERSION, FOREIGN)
@@ -92,11 +92,11 @@ def make_windows_python(folder: Path) -> WindowsPython:
 
 
 def _forward(made: Path, library: Path, folder: Path) -> None:
-    """A library that passes all calls to that of one version of Python."""
+    """Builds a library that forwards all calls to the library of one Python version."""
     whole = f"python{VERSION.replace('.', '')}"
     content = library.read_bytes()
     size = int(content[8 + 48 : 8 + 58])
-    index = content[8 + MEMBER : 8 + MEMBER + size]  # how many names, where each member is, the names
+    index = content[8 + MEMBER : 8 + MEMBER + size]  # the number of names, the offset of each member, the names
     names = index[4 + 4 * struct.unpack(">I", index[:4])[0] :].split(b"\0")
     calls = sorted({name[6:].decode() for name in names if name.startswith(b"__imp_")})
     text = "\n".join([f"LIBRARY {made.name}", "EXPORTS", *(f"  {name}={whole}.{name}" for name in calls)])

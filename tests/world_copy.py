@@ -1,4 +1,4 @@
-"""Worlds in which much happens, and every way to copy them."""
+"""Eventful worlds, and every way to copy them."""
 
 import copy
 import pickle

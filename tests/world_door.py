@@ -1,4 +1,4 @@
-"""Every door of hedon for one world: from its config to its page, in one process."""
+"""Takes one world through every public entry point of hedon, from its config to its page, in one process."""
 
 import json
 import multiprocessing
@@ -44,20 +44,20 @@ from hedon.view.page import to_json
 
 SEEDS = (5, 6)
 STEPS = 75
-"""At least one window with its learning, and in most worlds two."""
+"""At least one window with learning, and in most worlds two."""
 FRAMES = 7
-"""Steps between two frames: they do not divide a window."""
+"""Steps between frames; not a divisor of a window."""
 
 
 @dataclass
 class Trial:
-    """One world that goes through the doors.
+    """One world that goes through the entry points.
 
     Attributes:
-        world: its mechanisms.
-        folder: an empty one.
-        draw: for what is drawn on the way.
-        seen: configs of earlier worlds, as texts, by their digests.
+        world: Its mechanisms.
+        folder: Initially empty folder.
+        draw: Source of random choices.
+        seen: Configs of earlier worlds, as text, by digest.
     """
 
     world: Mixture
@@ -66,18 +66,18 @@ class Trial:
     seen: dict[str, str] = field(default_factory=dict)
 
     def config(self) -> Config:
-        """The config, as a user's file gives it."""
+        """The config, loaded from a file like a user's."""
         return self.world.config(self.folder)
 
     def plan(self, name: str, steps: int = STEPS, checkpoint_seconds: float = 1e9) -> RunPlan:
-        """A run of it in a folder of its own."""
+        """A plan for a run in a separate folder."""
         config = self.config()
         given = {"founders": founders_of(self.world, config), "networks": networks_of(self.world, config)}
         return RunPlan(config, SEEDS, steps, self.folder / name, 1, FRAMES, checkpoint_seconds, **given)
 
 
 def doors(trial: Trial, *, recorded: bool, report: bool) -> Iterator[tuple[str, Callable[[Trial], None]]]:
-    """The doors that a world goes through, in order, by name: also those of records, and a report with figures."""
+    """The entry points for a world, in order, with names; optionally those of records, and a report with figures."""
     yield from CHEAP.items()
     if trial.world.any("driven"):
         yield "environment", _driven
@@ -88,7 +88,7 @@ def doors(trial: Trial, *, recorded: bool, report: bool) -> Iterator[tuple[str, 
 
 
 def _config(trial: Trial) -> None:
-    """What a config says comes back from its text, and nothing else has its digest."""
+    """A config survives the round trip through its text, and no other config has its digest."""
     config = trial.config()
     text = dump_toml(config)
     file = trial.folder / "again.toml"
@@ -101,7 +101,7 @@ def _config(trial: Trial) -> None:
 
 
 def _piece(trial: Trial) -> None:
-    """Threads, pieces and a restore change nothing, and the ledger closes."""
+    """Threads, splitting and restoring change nothing, and the ledger balances."""
     config = trial.config()
     whole = begin(trial.world, config, SEEDS[:1], 1)
     _drive(whole)
@@ -123,7 +123,7 @@ def _piece(trial: Trial) -> None:
 
 
 def _value(trial: Trial) -> None:
-    """Worlds that are kept, copied or begun again go on as they would have, in the slots in which they were."""
+    """Worlds that are saved, copied or restarted continue identically, in the same slots."""
     config = trial.config()
     one = begin(trial.world, config, SEEDS, 1)
     _drive(one)
@@ -137,7 +137,7 @@ def _value(trial: Trial) -> None:
     _same(one, copied, "a restored world differs")
     for mine, theirs in zip(one.worlds, copied.worlds, strict=True):
         np.testing.assert_array_equal(mine.living, theirs.living)
-    if not (trial.world.any("founders") or trial.world.any("networks")):  # those are given to new worlds by hand
+    if not (trial.world.any("founders") or trial.world.any("networks")):  # which new worlds do not get automatically
         copied.reset(SEEDS)
         fresh = begin(trial.world, config, SEEDS, 1)
         for each in (copied, fresh):
@@ -150,7 +150,7 @@ CHEAP: dict[str, Callable[[Trial], None]] = {"config": _config, "simulation": _p
 
 
 def _drive(simulation: Simulation) -> None:
-    """Tells the agents that wait for a caller what to do."""
+    """Sets actions for agents that are driven externally."""
     for i, species in enumerate(simulation.config.species.values()):
         if species.learning.policy == "external":
             actions = np.tile(
@@ -164,7 +164,7 @@ def _same(one: Simulation, other: Simulation, what: str) -> None:
 
 
 def _close(world: Any) -> None:
-    """The energy of each species is what its ledger says."""
+    """The energy of each species matches its ledger."""
     agents = world.agents()
     hunted, damage = world.view("hunt_counters.energy_hunted"), world.view("obstacle_counters.energy_damage")
     for i, name in enumerate(world.config.species):
@@ -173,17 +173,17 @@ def _close(world: Any) -> None:
         spent = c["energy_basic"] + c["energy_action"] + c["energy_capped"] + c["energy_lost"]
         spent += damage[i] if len(damage) else 0.0
         held = agents["energy"][agents["species"] == i].sum()
-        assert abs(held - income + spent) < 1e-9 * (income + spent + 1.0), f"the ledger of {name} is open"
+        assert abs(held - income + spent) < 1e-9 * (income + spent + 1.0), f"the ledger of {name} does not balance"
 
 
 def _killed(trial: Trial) -> None:
-    """A run that is killed goes on to the same end as one that is not."""
+    """A killed run resumes and ends like one that was never killed."""
     run(trial.plan("run"))
     process = _context.Process(target=_run_until_killed, args=(trial, trial.draw.randrange(STEPS)))
     process.start()
     process.join(120)
     folder = trial.folder / "killed"
-    if process.exitcode == 0:  # everyone died before
+    if process.exitcode == 0:  # all agents died earlier
         assert_same_run(folder, trial.folder / "run")
         return
     assert process.exitcode == -signal.SIGKILL
@@ -197,7 +197,7 @@ def _run_until_killed(trial: Trial, step: int) -> None:
 
 
 class _Death:
-    """A callback that kills its process at the first moment from a step on."""
+    """A callback that kills its process at the first moment at or after a step."""
 
     def __init__(self, step: int) -> None:
         self.step = step
@@ -212,7 +212,7 @@ _context.set_forkserver_preload(["world_door"])
 
 
 def _longer(trial: Trial) -> None:
-    """A run that ended is made longer, to the same end."""
+    """A finished run is extended, with the same result."""
     folder = trial.folder / "longer"
     manifest = run(trial.plan("longer", trial.draw.randrange(1, STEPS)))
     if None in manifest.extinct_steps:
@@ -229,7 +229,7 @@ def _check(trial: Trial) -> None:
 
 
 def _summary(trial: Trial) -> None:
-    """Plain values, and as many agents of each species as the records have."""
+    """The summary has plain values, and the same number of agents of each species as the records."""
     opened = open_run(trial.folder / "run")
     summary, agents = summarize(opened), opened.agents()
     json.dumps(summary, allow_nan=False)
@@ -255,7 +255,7 @@ def _report(trial: Trial) -> None:
 def _export(trial: Trial) -> None:
     opened = open_run(trial.folder / "run")
     tables: list[TableName] = ["agents", "population"]
-    if opened.frames().collect().height:  # else everyone died before the first
+    if opened.frames().collect().height:  # otherwise all agents died before the first frame
         tables.append("frames")
     for name in tables:
         out = trial.folder / f"{name}.csv"
@@ -270,7 +270,7 @@ def _export(trial: Trial) -> None:
         now = last_step(opened, tree)
         assert alife_table(tree, opened.weight_names).height == tree.height
         if "mate_id" in tree.columns and tree["mate_id"].is_not_null().any():
-            continue  # there is no tree
+            continue  # with two parents, there is no tree
         lives = tree_sequence(tree, opened.weight_names, now)
         assert (lives.num_individuals, lives.num_samples) == (tree.height, tree["death_step"].null_count())
         assert index_table(tree, now, 5).height
@@ -285,7 +285,7 @@ def _export(trial: Trial) -> None:
 
 
 def _view(trial: Trial) -> None:
-    """Every recorded step has as many agents as lived then, wherever it is looked up."""
+    """Every recorded step shows the agents alive at that time, wherever it is looked up."""
     folder = trial.folder / "run"
     index = RunIndex(folder)
     told = index.describe()
@@ -306,7 +306,7 @@ def _view(trial: Trial) -> None:
             assert ids == _alive(lives, step), f"agents of step {step}"
             assert shown[step] == len(ids), f"the moment of step {step}"
         spans = [part["worlds"][i] for part in told["files"]["frames"] if part["worlds"][i] is not None]
-        assert all(a[1] < b[0] for a, b in pairwise(spans)), "a step is in two parts"
+        assert all(a[1] < b[0] for a, b in pairwise(spans)), "a step is split across two parts"
 
 
 def _alive(lives: pl.DataFrame, step: int) -> set[int]:
@@ -330,7 +330,7 @@ RECORDED: dict[str, Callable[[Trial], None]] = {
 
 
 def _driven(trial: Trial) -> None:
-    """Who drives agents from outside gets the same worlds on any number of threads; a run refuses them."""
+    """Externally driven agents give the same worlds on any number of threads; a run refuses them."""
     config, repeat = trial.config(), trial.draw.randrange(1, 7)
     pair = [make(config, len(SEEDS), SEEDS, repeat=repeat, threads=threads) for threads in (1, 2)]
     for each in pair:
