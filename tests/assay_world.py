@@ -22,8 +22,8 @@ def birth_death_world(
 ) -> pl.DataFrame:
     """The agents of a world without mutation, in which birth and death have constant probabilities.
 
-    The expected number of living descendants of a founder is exp((birth − death) · steps); that of children in a full
-    life is birth / death.
+    A founder is expected to have exp((birth − death) · steps) living descendants at the end, and birth / death children
+    in a full life.
 
     Args:
         genes: Genes of the founders, by column.

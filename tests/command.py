@@ -16,7 +16,7 @@ from hedon.cli.start import main
 
 
 class Captured(TextIOWrapper):
-    """A stream whose text stays readable; the command line does not touch streams other than those of the process."""
+    """A stream whose text stays readable; the command line changes only the process's own streams."""
 
     def __init__(self) -> None:
         self.kept = BytesIO()

@@ -77,7 +77,7 @@ class Trial:
 
 
 def doors(trial: Trial, *, recorded: bool, report: bool) -> Iterator[tuple[str, Callable[[Trial], None]]]:
-    """The entry points for a world, in order, with names; optionally those of records, and a report with figures."""
+    """The entry points for a world, in order, with names; optionally also for records, and a report with figures."""
     yield from CHEAP.items()
     if trial.world.any("driven"):
         yield "environment", _driven

@@ -1,4 +1,4 @@
-"""Every number that claims something holds the level that it promises, and has a calibration that shows it."""
+"""Every number behind a claim holds its nominal level, and has a calibration that shows it."""
 
 import os
 
@@ -11,7 +11,7 @@ from calibrations.registry import all_calibrations
 
 SIMULATIONS = int(os.environ.get("HEDON_CALIBRATIONS", "100"))
 COMMITTED = 1000
-"""Simulations behind a committed level, at least."""
+"""Minimum number of simulations behind a committed level."""
 ENTRIES = all_calibrations()
 
 
@@ -44,7 +44,7 @@ def test_a_level_that_is_off_does_not_hold(kind, observed, fits):
     assert holds(entry, Level(1000, 1000, observed, 0.01)) is fits
 
 
-def test_a_bias_does_not_hold_and_a_number_without_answers_neither():
+def test_neither_a_bias_nor_a_number_without_answers_holds():
     entry = Calibration("n", ("x",), "d", "bias", 0.0, lambda rng: float(rng.normal(0.5, 0.1)))
     assert not holds(entry, observe(entry, 50))
     assert not holds(entry, observe(Calibration("n", ("x",), "d", "missed", 0.05, lambda rng: None), 5))

@@ -1,4 +1,4 @@
-"""Whatever prints a p value, an interval or a verdict has a calibration."""
+"""Everything that prints a p value, an interval or a verdict has a calibration."""
 
 from typing import get_args
 
@@ -14,7 +14,7 @@ WITHOUT_CHANCE = {
     "topic:regime": "counts and classes of what was recorded",
     "verdict:setting": "the setting of a config, the same in every world",
 }
-"""What prints no number that could be wrong by chance, and why."""
+"""Entries that print no number that could be wrong by chance, and why."""
 PRINTED = [
     *(f"topic:{name}" for name in TOPICS),
     *(f"verdict:{name}" for name in get_args(OverWorlds)),

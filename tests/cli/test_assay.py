@@ -1,4 +1,4 @@
-"""`hedon assay` as a user calls it: a known sign, an interruption, starts, and each bad input."""
+"""`hedon assay` as a user runs it: an effect of known sign, interruption, starts, and every invalid input."""
 
 import json
 import os
@@ -31,7 +31,7 @@ COSTLY = (
     "hazard.kappa=0",
     "hazard.alpha_age=0",
 )
-"""A world without food and births, in which motion alone kills: who is rewarded for moving dies first."""
+"""A world without food or births in which only motion kills: agents rewarded for moving die first."""
 SET = tuple(part for setting in COSTLY for part in ("--set", setting))
 SHORT = ("--seeds", "1-5", "--steps", "3072", *SET)
 BRIEF = ("--seeds", "1-2", "--steps", "1536", *SET)
@@ -43,7 +43,7 @@ def call(folder: Path, *arguments: str) -> "subprocess.CompletedProcess[str]":
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a landscape of the costly world."""
+    """A folder with a landscape assay of the costly world."""
     path = tmp_path_factory.mktemp("assay")
     answer = call(path, "landscape", "baseline", *BRIEF, "--out", "whole")
     assert answer.returncode == 0, answer.stderr
@@ -85,7 +85,7 @@ def test_a_script_for_slurm_has_a_task_for_each_world_at_most(folder: Path) -> N
 
 
 @pytest.mark.long
-def test_where_motion_kills_its_reward_is_selected_against(folder: Path) -> None:
+def test_reward_for_motion_is_selected_against_if_motion_kills(folder: Path) -> None:
     assert call(folder, "landscape", "baseline", *SHORT, "--out", "costly").returncode == 0
     found = effects(folder / "costly" / "landscape.json")
     for measure in ("descendants", "lifespan"):
@@ -118,10 +118,10 @@ def test_an_interrupted_assay_goes_on_to_the_same_summary(folder: Path) -> None:
     before = (folder / "broken" / "run" / "manifest.json").stat().st_mtime_ns
     answer = call(folder, *command[2:])
     assert answer.returncode == 0, answer.stderr
-    assert (folder / "broken" / "run" / "manifest.json").stat().st_mtime_ns == before, "a finished one is only read"
+    assert (folder / "broken" / "run" / "manifest.json").stat().st_mtime_ns == before, "a finished run is only read"
 
 
-def test_an_assay_grows_by_seeds_and_keeps_what_it_has(folder: Path) -> None:
+def test_seeds_can_be_added_to_an_assay_without_repeating_runs(folder: Path) -> None:
     command = ("landscape", "baseline", *BRIEF[2:], "--out", "grown")
     assert call(folder, *command, "--seeds", "1").returncode == 0
     before = (folder / "grown" / "run" / "manifest.json").read_bytes()
@@ -131,9 +131,9 @@ def test_an_assay_grows_by_seeds_and_keeps_what_it_has(folder: Path) -> None:
     assert (folder / "grown" / "run" / "manifest.json").read_bytes() == before
     whole, grown = (json.loads((folder / name / "landscape.json").read_text()) for name in ("whole", "grown"))
     assert [run["seeds"] for run in grown["runs"]] == [[1], [2]]
-    assert grown["tables"] == whole["tables"], "worlds that were made together or apart are the same"
+    assert grown["tables"] == whole["tables"], "worlds are the same whether made together or separately"
     (folder / "grown" / "landscape.json").unlink()
-    assert call(folder, *command, "--seeds", "1").returncode == 0, "fewer are read alone"
+    assert call(folder, *command, "--seeds", "1").returncode == 0, "fewer seeds are read from the finished runs"
     assert "1 world, 1,536 steps" in (folder / "grown" / "landscape.md").read_text(encoding="utf-8")
 
 
@@ -147,7 +147,7 @@ def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: 
     assert found["start"] == 0.5
     rows = {row["seed"]: row for row in found["tables"]["world"]["rows"]}
     assert set(rows) == {1, 2, 3, 4, 5}
-    # The founders of the competition, as a freezer: without their weight of action they live longer or shorter.
+    # The founders of the competition serve as a frozen stock; without their action weight, their lifespans change.
     answer = call(folder, "knockout", "compete/run@0", "action", *SHORT[:4], "--out", "knockout")
     assert answer.returncode == 0, answer.stderr
     found = json.loads((folder / "knockout" / "knockout.json").read_text(encoding="utf-8"))
@@ -162,7 +162,7 @@ def test_the_better_group_wins_and_a_knockout_shows_the_worth_of_a_gene(folder: 
 
 
 @pytest.mark.long
-def test_fitness_against_frequency_is_told_at_each_share(folder: Path) -> None:
+def test_fitness_against_frequency_is_reported_at_each_share(folder: Path) -> None:
     command = ("frequency", "action=-8", "action=8", *SHORT, "--out", "frequency")
     answer = call(folder, *command, "--shares", "0.5,0.2")
     assert answer.returncode == 0, answer.stderr
@@ -179,7 +179,7 @@ def test_fitness_against_frequency_is_told_at_each_share(folder: Path) -> None:
     assert answer.returncode == 0, answer.stderr
     assert {path: (path / "manifest.json").stat().st_mtime_ns for path in runs.values()} == before
     again = json.loads((folder / "frequency" / "frequency.json").read_text(encoding="utf-8"))
-    assert again["tables"]["frequency_share"]["rows"][:2] == rows, "a share more leaves the others as they are"
+    assert again["tables"]["frequency_share"]["rows"][:2] == rows, "adding a share leaves the others unchanged"
 
 
 def test_groups_of_one_of_several_species_compete(folder: Path) -> None:
@@ -215,7 +215,7 @@ def test_groups_with_two_parents_are_told_apart_by_their_genes(folder: Path) -> 
     assert (row["action=1"], row["action=-1"]) == (living.count(1.0), living.count(-1.0))
 
 
-def test_a_start_begins_at_its_point(folder: Path) -> None:
+def test_a_stability_assay_starts_at_the_given_point(folder: Path) -> None:
     lively = ("--set", "world.rollout_steps=64", "--set", "learning.minibatch_size=32", "--set", "birth.kappa=0.002")
     options = (*lively, "--set", "hazard.kappa=0.1", "--steps", "1024", "--seeds", "1-3", "--out", "start")
     answer = call(folder, "stability", "baseline", "--at", "food=5,action=-4", "--beside", "food=0", *options)
@@ -246,7 +246,7 @@ LIVELY = (
 
 @pytest.fixture(scope="module")
 def past(folder: Path) -> Path:
-    """Two worlds of many births and deaths, as the past of others."""
+    """Two worlds with many births and deaths, as the past of other worlds."""
     settings = tuple(part for setting in LIVELY for part in ("--set", setting))
     made = hedon("run", "baseline", "--seeds", "1-2", "--steps", "896", *settings, "--out", "past", cwd=folder)
     assert made.returncode == 0, made.stderr
@@ -254,7 +254,7 @@ def past(folder: Path) -> Path:
 
 
 @pytest.mark.more
-def test_futures_that_part_late_end_nearer_than_fresh_worlds(folder: Path, past: Path) -> None:
+def test_futures_that_diverge_late_end_closer_together_than_fresh_worlds(folder: Path, past: Path) -> None:
     words = ("contingency", "past", "--steps", "1024", "--seeds", "101-106", "--out", "replayed")
     for part in ("1/2", "2/2", None):
         answer = call(folder, *words, *(("--part", part) if part else ()))
@@ -352,7 +352,7 @@ def test_bad_input_ends_in_one_message(folder: Path, arguments: tuple[str, ...],
     assert not answer.stdout
 
 
-def test_a_run_that_cannot_be_read_is_named_before_another_is_made(folder: Path, tmp_path: Path) -> None:
+def test_an_unreadable_run_is_reported_before_another_is_made(folder: Path, tmp_path: Path) -> None:
     shutil.copytree(folder / "whole", tmp_path / "lacking")
     config = tmp_path / "lacking" / "run" / "config.toml"
     lines = config.read_text(encoding="utf-8").splitlines(keepends=True)

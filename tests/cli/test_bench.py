@@ -1,4 +1,4 @@
-"""`python -m benchmarks` as a user calls it."""
+"""`python -m benchmarks` as a user runs it."""
 
 import json
 import math
@@ -23,7 +23,7 @@ def call(*arguments):
 
 
 def numbers(value):
-    """All numbers in a document, with the name that they stand under."""
+    """All numbers in a document, each with the name of its entry."""
     if isinstance(value, dict):
         for name, item in value.items():
             yield from ((name, each) if inner is None else (inner, each) for inner, each in numbers(item))
@@ -36,14 +36,14 @@ def numbers(value):
 
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory):
-    """All parts in tiny sizes, and what was printed."""
+    """All parts at tiny sizes, and the printed output."""
     path = tmp_path_factory.mktemp("bench") / "here.json"
     answer = call("--quick", "--threads", "1,2", "--json", path, *HERE)
     assert answer.returncode == 0, answer.stderr
     return json.loads(path.read_text()), answer.stdout
 
 
-def test_every_part_prints_a_table_beside_what_the_machine_can_do(measured):
+def test_every_part_prints_a_table_and_what_the_machine_can_do(measured):
     document, printed = measured
     for name in HERE:
         assert f"\n{name}: " in printed
@@ -52,7 +52,7 @@ def test_every_part_prints_a_table_beside_what_the_machine_can_do(measured):
     assert document["machine"]["date"] in printed
 
 
-def test_the_file_has_finite_numbers_of_every_part(measured):
+def test_the_file_has_finite_numbers_for_every_part(measured):
     document, _ = measured
     assert document["format_version"] == bench.FORMAT_VERSION == 1
     assert list(document["parts"]) == list(HERE)
@@ -62,7 +62,7 @@ def test_the_file_has_finite_numbers_of_every_part(measured):
     assert all(math.isfinite(value) for _, value in found)
     times = [(name, value) for name, value in found if name is not None and "seconds" in name]
     assert len(times) > 100
-    # The clock of the writing threads is coarse, and in the tiny stream they have little to do.
+    # The clock of the writing threads is coarse, and the tiny stream gives them little to do.
     assert [name for name, value in times if value <= 0 and name != "stream_thread_cpu_seconds"] == []
 
 
@@ -75,7 +75,7 @@ def test_the_file_has_a_row_for_each_case(measured):
     assert [row["kernel"] for row in parts["world"][3:]] == kernels[1:]
     assert [(row["slots"], row["threads"]) for row in parts["growth"]] == [(200, 1), (200, 2), (400, 1), (400, 2)]
     one, two, both = (row["digests"] for row in parts["world"][:3])
-    assert one == two == both[:1]  # threads and company change nothing
+    assert one == two == both[:1]  # neither threads nor other worlds change anything
     assert len(set(both)) == 2
     for row in parts["world"]:
         assert len(row["window_seconds"]) == measured[0]["plan"]["windows"]
@@ -83,7 +83,7 @@ def test_the_file_has_a_row_for_each_case(measured):
         assert row["learners_per_window"] <= max(row["alive"])
 
 
-def test_an_unknown_part_names_the_nearest_and_what_there_is():
+def test_an_unknown_part_gets_the_list_of_parts_and_a_suggestion():
     answer = call("word")
     assert answer.returncode == 2
     assert answer.stderr == (
@@ -92,11 +92,11 @@ def test_an_unknown_part_names_the_nearest_and_what_there_is():
     )
 
 
-def test_a_file_that_cannot_be_written_is_said(tmp_path):
+def test_a_file_that_cannot_be_written_is_reported(tmp_path):
     answer = call("rays", "--quick", "--json", tmp_path / "none" / "a.json")
     assert answer.returncode == 2
     assert answer.stderr == f"hedon: --json: cannot write {tmp_path / 'none' / 'a.json'}: No such file or directory\n"
-    assert answer.stdout == ""  # said before anything was measured
+    assert answer.stdout == ""  # reported before anything was measured
 
 
 def test_a_failed_check_ends_in_exit_code_1_and_names_the_part(monkeypatch):
@@ -116,7 +116,7 @@ def test_the_help_names_every_part():
         assert f"{name:9} {part.about}" in answer.stdout
 
 
-def test_the_command_that_measured_before_names_what_does_now():
+def test_the_former_command_names_its_replacement():
     answer = subprocess.run(["hedon", "bench", "world"], capture_output=True, text=True, check=False)
     assert answer.returncode == 2
     assert answer.stderr == (

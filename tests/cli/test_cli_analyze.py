@@ -28,7 +28,7 @@ def test_analyze_takes_several_runs_together(tmp_path: Path) -> None:
     assert [world["condition"] for world in content["worlds"]].count("baseline (corrected) [b]") == 2
 
 
-def test_wrong_arguments_are_errors_of_hedon(tmp_path: Path) -> None:
+def test_wrong_arguments_raise_hedon_errors(tmp_path: Path) -> None:
     folder = write_run(tmp_path / "run", intervals=2, worlds=1, snapshot=False)
     assert isinstance(CliRunner().invoke(app, ["analyze", str(folder), "--only", "life"]).exception, TopicError)
     assert isinstance(CliRunner().invoke(app, ["analyze", str(tmp_path)]).exception, RecordError)

@@ -1,4 +1,4 @@
-"""What `hedon compare` says before its numbers: the step, the settings, the design; and where it writes."""
+"""The preface of `hedon compare` (step, settings, design), and where it writes."""
 
 import json
 import shutil
@@ -31,7 +31,7 @@ ELEVEN = (
     *("birth.kappa=0.0002", "hazard.alpha_age=1e-6", "hazard.beta_age=5e-6", "learning.gamma=0.99"),
     *("learning.gae_lambda=0.9", "learning.learning_rate=0.0001", "learning.clip_coef=0.3"),
 )
-"""Changes of so many settings that their lines are cut."""
+"""Changes to so many settings that their list is truncated."""
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,7 @@ def refused(*words: str) -> str:
     return str(error)
 
 
-def test_the_first_line_is_the_step_and_why(tmp_path: Path) -> None:
+def test_the_first_line_gives_the_step_and_the_reason(tmp_path: Path) -> None:
     assert said("runs/base", "runs/costly", out=tmp_path / "a").startswith(f"Compared at step {STEPS}.\n")
     longer = f"Compared at step {STEPS}, the length of the shortest: runs/long has {2 * STEPS}."
     assert said("runs/base", "runs/long", out=tmp_path / "b").startswith(f"{longer}\n")
@@ -89,12 +89,12 @@ def test_of_many_runs_only_some_are_named() -> None:
     assert step_sentence(None, []) == ""
 
 
-def test_settings_that_differ_are_listed_as_by_check(tmp_path: Path) -> None:
+def test_differing_settings_are_listed_as_in_check(tmp_path: Path) -> None:
     text = said("runs/base", "runs/costly", out=tmp_path)
     line = "energy.basic_cost: 0.001 -> 0.004"
     assert f"Settings that differ, runs/base -> runs/costly:\n  {line}\n" in text
     assert f"  {line}\n" in CliRunner().invoke(app, ["check", "runs/base", "--against", "runs/costly"]).output
-    assert "runs/costly is baseline (corrected): energy.basic_cost 0.004." in text, "as `hedon report` names it"
+    assert "runs/costly is baseline (corrected): energy.basic_cost 0.004." in text, "the same name as in `hedon report`"
     assert "differ: the comparison" not in text
     content = json.loads((tmp_path / "compare.json").read_text())
     assert content["settings"] == [{"setting": "energy.basic_cost", "values": [0.001, 0.004]}]
@@ -102,13 +102,13 @@ def test_settings_that_differ_are_listed_as_by_check(tmp_path: Path) -> None:
     assert "- energy.basic_cost: 0.001 -\\> 0.004\n" in (tmp_path / "compare.md").read_text()
 
 
-def test_conditions_in_one_folder_have_settings_too(tmp_path: Path) -> None:
+def test_settings_are_also_listed_for_conditions_in_one_folder(tmp_path: Path) -> None:
     for name in ("base", "costly"):
         shutil.copytree(f"runs/{name}", tmp_path / "runs" / name)
     assert "\n  energy.basic_cost: 0.001 -> 0.004\n" in said(str(tmp_path / "runs"))
 
 
-def test_equal_settings_are_a_caution(tmp_path: Path) -> None:
+def test_equal_settings_give_a_caution(tmp_path: Path) -> None:
     caution = "No setting differs: these are two samples of the same condition."
     text = said("runs/base", "runs/others", out=tmp_path)
     assert f"{caution}\n" in text
@@ -118,7 +118,7 @@ def test_equal_settings_are_a_caution(tmp_path: Path) -> None:
     assert f"<strong>{caution}</strong>" in (tmp_path / "compare.html").read_text()
 
 
-def test_many_differing_settings_are_a_caution_and_are_cut(tmp_path: Path) -> None:
+def test_many_differing_settings_give_a_caution_and_are_truncated(tmp_path: Path) -> None:
     changes = load_config("baseline", overrides=[*QUICK, *ELEVEN])
     run(RunPlan(changes, seeds=(1, 2), steps=STEPS, out=tmp_path / "many"))
     text = said("runs/base", str(tmp_path / "many"), out=tmp_path / "answer")
@@ -163,8 +163,8 @@ def test_one_design_holds_for_all_rows(
     assert all(row["left out"] == each * (worlds - row["worlds"]) for row in rows)
 
 
-def test_a_row_that_lacks_values_keeps_the_design_and_counts_them() -> None:
-    """One pair of eight has lifetimes, which by themselves would be compared as independent."""
+def test_a_row_with_missing_values_keeps_the_design_and_counts_them() -> None:
+    """Of eight pairs, one has lifetimes; on their own, they would be compared as independent samples."""
     rows = [
         {"arm": arm, "seed": seed, "alive_mean": 10.0 * seed, "mean_lifetime": 5.0 if (seed, arm) in known else None}
         for known in [{(1, "a"), (1, "b"), (2, "a"), (3, "b"), (4, "b")}]
@@ -214,13 +214,13 @@ def test_a_weight_stands_for_its_mean(tmp_path: Path) -> None:
     assert row["measure"] == "mean of w_food: prey"
 
 
-def test_a_folder_that_does_not_exist_is_told_from_one_without_worlds(tmp_path: Path) -> None:
+def test_a_missing_folder_is_distinguished_from_one_without_worlds(tmp_path: Path) -> None:
     assert refused("runs/base", "runs/costy") == "runs/costy does not exist; did you mean runs/costly?"
     assert refused("nowhere/at/all", "runs/base") == "nowhere/at/all does not exist"
     assert refused(str(tmp_path)).startswith(f"{tmp_path}: holds no worlds to compare: give runs")
 
 
-def test_each_pair_of_sources_has_its_folder_and_no_other_is_overwritten(tmp_path: Path) -> None:
+def test_each_pair_of_sources_has_its_own_folder_and_overwrites_no_other(tmp_path: Path) -> None:
     assert "wrote compare/base-costly/compare.json" in said("runs/base", "runs/costly/")
     assert "wrote compare/base-others/compare.json" in said("runs/base", "runs/others")
     assert said("runs/base/", "runs/costly"), "the same sources are compared again"

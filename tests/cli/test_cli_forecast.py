@@ -4,7 +4,7 @@ from hedon.cli.main import app
 from hedon.config import ConfigError
 
 
-def test_demography_prints_tables_and_warnings() -> None:
+def test_forecast_prints_tables_and_warnings() -> None:
     result = CliRunner().invoke(app, ["forecast", "baseline", "--set", "food.normal.growth_rate=1.0"])
     assert result.exit_code == 0, result.output
     assert "life at constant energy" in result.output
@@ -23,6 +23,6 @@ def test_a_world_that_cannot_be_made_has_no_intake() -> None:
     assert "What is eaten" not in result.output
 
 
-def test_a_wrong_setting_is_an_error_of_hedon() -> None:
+def test_a_wrong_setting_raises_a_hedon_error() -> None:
     result = CliRunner().invoke(app, ["forecast", "baseline", "--set", "hazard.kapa=1.0"])
     assert isinstance(result.exception, ConfigError)

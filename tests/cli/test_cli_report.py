@@ -20,6 +20,6 @@ def test_report_prints_figures_and_files(tmp_path: Path) -> None:
     assert (folder / "summary.json").is_file()
 
 
-def test_report_of_no_run_is_an_error_of_hedon(tmp_path: Path) -> None:
+def test_report_without_a_run_raises_a_hedon_error(tmp_path: Path) -> None:
     result = CliRunner().invoke(APP, [str(tmp_path)])
     assert isinstance(result.exception, RecordError)

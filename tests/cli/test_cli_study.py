@@ -1,4 +1,4 @@
-"""`hedon study` as a user calls it."""
+"""`hedon study` as a user runs it."""
 
 import json
 import re
@@ -21,7 +21,7 @@ def call(folder: Path, *arguments: str) -> "CompletedProcess[str]":
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which two items of the baseline were made, on two worlds of 1024 steps, and what was printed."""
+    """A folder in which two items of the baseline were made from two worlds of 1024 steps."""
     folder = tmp_path_factory.mktemp("study")
     answer = call(folder, "run", "weights-baseline", "history-baseline", "--seeds", "1-2", "--steps", "1024")
     assert answer.returncode == 0, answer.stderr
@@ -30,7 +30,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.smoke
-def test_items_of_settings_alone_need_no_run(tmp_path: Path) -> None:
+def test_items_that_depend_only_on_settings_need_no_run(tmp_path: Path) -> None:
     answer = call(tmp_path, "run", *LAWS, "--fidelity", "released")
     assert answer.returncode == 0, answer.stderr
     assert "0 worlds: none is needed" in answer.stdout
@@ -44,10 +44,10 @@ def test_items_of_settings_alone_need_no_run(tmp_path: Path) -> None:
         assert (tmp_path / "studies" / NAME / "figures" / f"{name}.svg").stat().st_size > 10_000
 
 
-def test_the_page_holds_its_figures_and_says_what_they_are_made_of(made: Path) -> None:
+def test_the_page_contains_its_figures_and_describes_their_data(made: Path) -> None:
     text = (made / "studies" / NAME / "study.html").read_text(encoding="utf-8")
     assert text.count("data:image/svg+xml;base64,") == 2
-    assert not re.search(r'(src|href)="(?!data:|#)', text), "the page must stand alone"
+    assert not re.search(r'(src|href)="(?!data:|#)', text), "the page must be self-contained"
     assert "Asked for: 2 worlds of 1,024 steps; the study has 5 of 10,240,000." in text
     assert "Claims about these conditions" in text
     markdown = (made / "studies" / NAME / "study.md").read_text(encoding="utf-8")
@@ -59,7 +59,7 @@ def test_the_page_holds_its_figures_and_says_what_they_are_made_of(made: Path) -
     assert (made / "studies" / NAME / "tables" / "verdict.csv").is_file()
 
 
-def test_what_is_there_is_used_and_more_is_added(made: Path) -> None:
+def test_existing_worlds_are_reused_and_more_are_added(made: Path) -> None:
     again = call(made, "run", "weights-baseline", "--seeds", "1-2", "--steps", "1024")
     assert "all are there" in again.stdout
     more = call(made, "run", "weights-baseline", "--seeds", "2-3", "--steps", "2048")
@@ -76,7 +76,7 @@ def test_the_plan_names_every_item_with_a_measured_time(tmp_path: Path) -> None:
         assert re.search(rf"^ {re.escape(name)} ", answer.stdout, re.MULTILINE)
     assert re.search(r"Measured now: [\d,]+ world-steps/s on 1 thread with \d+ agents", answer.stdout)
     assert re.search(r"^ together .* \d+ h \d\d min", answer.stdout, re.MULTILINE)
-    # Two species of one setting are one setting.
+    # Two species in one setting count as one setting.
     assert re.search(r"^ sequel-numbers .* 1 setting, ", answer.stdout, re.MULTILINE)
 
 
@@ -89,7 +89,7 @@ def test_the_list_names_every_study_and_item(tmp_path: Path) -> None:
             assert re.search(rf"^ {re.escape(item.name)} ", answer.stdout, re.MULTILINE)
 
 
-def test_a_report_is_made_of_what_is_there_and_runs_nothing(made: Path) -> None:
+def test_a_report_uses_existing_worlds_and_runs_nothing(made: Path) -> None:
     before = sorted((made / "runs").iterdir())
     answer = call(made, "report", "weights-baseline", "fear", "--seeds", "1-2", "--steps", "1024")
     assert answer.returncode == 0, answer.stderr
@@ -111,7 +111,7 @@ def test_parts_on_several_machines_make_all_worlds_and_the_script_calls_them(tmp
     for part in ("1/2", "2/2"):
         answer = call(tmp_path, "run", *words, "--part", part)
         assert answer.returncode == 0, answer.stderr
-    assert not (tmp_path / "studies").exists(), "a report is made of all parts"
+    assert not (tmp_path / "studies").exists(), "a report needs all parts"
     assert "all are there" in call(tmp_path, "run", *words).stdout
     answer = call(tmp_path, "run", *words, "--slurm", "--jobs", "9", "--runs", "shared runs")
     assert answer.returncode == 0, answer.stderr
@@ -121,7 +121,7 @@ def test_parts_on_several_machines_make_all_worlds_and_the_script_calls_them(tmp
     assert '--seeds 1,2 --steps 64 --part "$SLURM_ARRAY_TASK_ID/2"' in script
 
 
-def test_the_word_of_before_names_the_new_one(tmp_path: Path) -> None:
+def test_the_former_command_names_the_new_one(tmp_path: Path) -> None:
     answer = command("reproduce", "list", cwd=tmp_path)
     assert answer.returncode == 2
     assert answer.stderr.startswith("hedon: there is no command 'reproduce': call `hedon study`")
@@ -145,7 +145,7 @@ def test_the_word_of_before_names_the_new_one(tmp_path: Path) -> None:
         (("run", "weights-poor", "--quick", "--steps", "9"), "--quick: has seeds and steps of its own"),
     ],
 )
-def test_a_wrong_word_is_named(tmp_path: Path, arguments: tuple[str, ...], message: str) -> None:
+def test_a_wrong_argument_is_named(tmp_path: Path, arguments: tuple[str, ...], message: str) -> None:
     answer = call(tmp_path, *arguments)
     assert answer.returncode == 2
     assert answer.stderr.startswith("hedon: ")

@@ -70,7 +70,7 @@ def test_check_names_all_problems(tmp_path: Path) -> None:
         (("config", "show", "small", "--set", "energy.initial"), 'must be "section.name=value"'),
     ],
 )
-def test_typing_errors_name_the_nearest(args: tuple[str, ...], text: str) -> None:
+def test_typing_errors_get_the_nearest_name(args: tuple[str, ...], text: str) -> None:
     found = hedon(*args)
     assert found.returncode == 2
     assert text in found.stderr
@@ -83,7 +83,7 @@ def test_version() -> None:
 
 
 def test_a_check_reads_rules_as_a_run_does(tmp_path: Path) -> None:
-    """Their text is part of the digest, and a file that is not there, fails or lacks the function is an error."""
+    """Their text is part of the digest; a file that is missing, fails or lacks the function is an error."""
 
     def check(text: str | None, name: str = "paid") -> subprocess.CompletedProcess[str]:
         (tmp_path / "rule.py").write_text(text) if text else (tmp_path / "rule.py").unlink()

@@ -1,4 +1,4 @@
-"""`hedon run --backend`: what is said where there is no device, whether its library is built or not."""
+"""Messages of `hedon run --backend` without a device, whether or not its library is built."""
 
 import os
 import subprocess

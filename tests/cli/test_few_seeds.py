@@ -1,4 +1,4 @@
-"""Commands that run many worlds note at the start what few seeds cannot show."""
+"""Commands that run many worlds print a note at the start if there are too few seeds for some results."""
 
 from pathlib import Path
 
@@ -44,7 +44,7 @@ def test_an_assay(tmp_path: Path, seeds: str, note: str) -> None:
         (("fear", "--seeds", "1-2"), "2 seeds per condition: intervals need 5"),
         (("fear", "--seeds", "1-6"), ""),
         (("fear", "--quick"), ""),
-        (("hazard", "body"), ""),  # one needs no world, the other shows one
+        (("hazard", "body"), ""),  # the first needs no world, the second shows just one
     ],
 )
 def test_a_study(tmp_path: Path, words: tuple[str, ...], note: str) -> None:

@@ -1,4 +1,4 @@
-"""The help of `hedon` lists every command once, by group, on one screen."""
+"""The help of `hedon` lists each command once, by group, on one screen."""
 
 from command import hedon
 
@@ -16,7 +16,7 @@ def test_every_command_is_in_one_group():
 def test_the_help_fits_one_screen():
     lines = hedon("--help").stdout.splitlines()
     assert len(lines) <= 45
-    assert not [line for line in lines[2:] if line.endswith("...")], "nothing is cut off"
+    assert not [line for line in lines[2:] if line.endswith("...")], "descriptions are cut off"
 
 
 def test_the_command_alone_shows_its_help():

@@ -1,4 +1,4 @@
-"""What nobody would type, and programs do: one line and exit code 2, quickly."""
+"""Input that only programs would produce: it gets one message and exit code 2, quickly."""
 
 import os
 import subprocess
@@ -25,7 +25,7 @@ FILES = {
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_a_file_that_is_no_config_is_one_message_at_once(tmp_path: Path, name: str) -> None:
+def test_a_file_that_is_not_a_config_gets_one_message_quickly(tmp_path: Path, name: str) -> None:
     text, words = FILES[name]
     path = tmp_path / "my.toml"
     path.write_text(text, encoding="utf-8")
@@ -35,7 +35,7 @@ def test_a_file_that_is_no_config_is_one_message_at_once(tmp_path: Path, name: s
     assert words in answer.stderr
     assert "Traceback" not in answer.stderr
     assert len(answer.stderr) < 6000
-    assert time.monotonic() - begun < 20, "a second on a quiet machine"
+    assert time.monotonic() - begun < 20, "should take about a second on an idle machine"
 
 
 def test_a_byte_order_mark_and_carriage_returns_are_read(tmp_path: Path) -> None:
@@ -48,7 +48,7 @@ def test_a_byte_order_mark_and_carriage_returns_are_read(tmp_path: Path) -> None
     ("seeds", "words"),
     [("9" * 5000, "a seed of 5,000 digits"), ("-3", "-3 is negative"), ("1-" + "9" * 5000, "5,000 digits")],
 )
-def test_seeds_that_are_none(seeds: str, words: str) -> None:
+def test_invalid_seeds_get_one_line(seeds: str, words: str) -> None:
     answer = hedon("run", "small", f"--seeds={seeds}")
     assert answer.returncode == 2
     assert words in answer.stderr
@@ -56,7 +56,7 @@ def test_seeds_that_are_none(seeds: str, words: str) -> None:
 
 
 @pytest.mark.parametrize("value", ["[" * 50_000, "9" * 5000, "9" * 900, '"' + "x" * 100_000])
-def test_values_of_settings_that_are_none(value: str) -> None:
+def test_invalid_values_of_settings_get_a_short_message(value: str) -> None:
     answer = hedon("config", "check", "small", "--set", f"energy.initial={value}")
     assert answer.returncode == 2
     assert "energy.initial = " in answer.stderr
@@ -66,14 +66,14 @@ def test_values_of_settings_that_are_none(value: str) -> None:
         assert (answer.returncode, "Traceback" in answer.stderr) == (2, False)
 
 
-def test_an_output_of_ascii_alone_is_served() -> None:
+def test_commands_work_with_ascii_output() -> None:
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     for command in (["forecast", "baseline"], ["config", "show", "baseline"]):
         answer = subprocess.run(["hedon", *command], capture_output=True, text=True, check=False, env=environment)
         assert (answer.returncode, answer.stderr) == (0, "")
 
 
-def test_a_limit_on_addresses_is_named_before_libraries_abort() -> None:
+def test_a_limit_on_address_space_is_reported_before_libraries_abort() -> None:
     script = "ulimit -v 800000; exec hedon run baseline --steps 64"
     answer = subprocess.run(["sh", "-c", script], capture_output=True, text=True, check=False, timeout=60)
     assert answer.returncode == 2

@@ -1,4 +1,4 @@
-"""What users mistype, leave empty or have set elsewhere ends in one message that says what to do."""
+"""Typing errors, empty values and misplaced settings get one helpful message."""
 
 import os
 import subprocess
@@ -33,7 +33,7 @@ def test_a_mistake_is_named(tmp_path, words, message):
     assert answer.returncode == 2
     assert message in answer.stderr
     assert "Traceback" not in answer.stderr
-    assert sorted(tmp_path.iterdir()) == before, "nothing is written"
+    assert sorted(tmp_path.iterdir()) == before, "nothing should be written"
 
 
 @pytest.mark.parametrize(
@@ -49,12 +49,12 @@ def test_a_mistake_is_named(tmp_path, words, message):
         (("export", "agents", "here", "--format", "pdf"), "--format: 'pdf' is not one of 'csv', 'parquet', 'arrow'"),
     ],
 )
-def test_a_refused_value_gives_what_is_allowed(words, message):
+def test_a_refused_value_gets_a_message_with_the_allowed_ones(words, message):
     answer = hedon(*words)
     assert (answer.returncode, answer.stderr) == (2, f"hedon: {message}\n")
 
 
-def test_what_a_session_draws_on_does_not_matter(tmp_path):
+def test_the_plotting_backend_of_the_environment_does_not_matter(tmp_path):
     command = ["hedon", "run", "baseline", "--steps", "64", "--out", str(tmp_path / "run")]
     answer = subprocess.run(
         command, env=os.environ | {"MPLBACKEND": "nonsense"}, capture_output=True, text=True, check=False

@@ -1,4 +1,4 @@
-"""Where what a command prints cannot be written, it says so in one line, and ends with exit code 2."""
+"""A command whose output cannot be written reports it in one line with exit code 2; a closed pipe gives 141."""
 
 import json
 import os
@@ -32,7 +32,7 @@ def call(arguments, stdout, out, unbuffered):
 
 
 @pytest.mark.parametrize("arguments", COMMANDS, ids=" ".join)
-def test_a_full_disk_behind_what_is_printed_is_one_line(arguments, tmp_path):
+def test_output_to_a_full_disk_is_reported_in_one_line(arguments, tmp_path):
     with open("/dev/full", "w") as full:
         answer = call(arguments, full, tmp_path / "out", unbuffered=arguments == ("--help",))
     assert answer == (2, "hedon: cannot write what it prints: No space left on device\n")
@@ -50,7 +50,7 @@ def test_a_reader_that_has_enough_is_no_fault(arguments, unbuffered, tmp_path):
 
 
 @pytest.mark.parametrize("command", ["run", "resume"])
-def test_a_run_whose_reader_has_enough_is_interrupted(command, tmp_path):
+def test_a_run_is_interrupted_if_its_output_is_no_longer_read(command, tmp_path):
     folder = tmp_path / "out"
     begin = ("run", "small", "--steps", "64", "--out", "{out}", "--threads", "1", "--no-report")
     if command == "resume":

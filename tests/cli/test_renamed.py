@@ -1,4 +1,4 @@
-"""Names of earlier versions: commands and options are refused with their new names."""
+"""Commands, options and variables of earlier versions are refused with a message that gives the new name."""
 
 import pytest
 from command import hedon

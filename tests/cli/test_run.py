@@ -1,4 +1,4 @@
-"""`hedon run` as a user calls it."""
+"""`hedon run` as a user runs it."""
 
 import json
 import signal
@@ -23,7 +23,7 @@ def call(*arguments, **options):
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
-    """A short run of two worlds, and what the command printed."""
+    """A short run of two worlds, and the output of the command."""
     folder = tmp_path_factory.mktemp("run with spaces and ümläut") / "out"
     seeds = ("--seeds", "3,5", "--steps", 1300, "--frames", 100, "--out", folder)
     answer = call("run", "poison", *seeds, *QUICK, *LIVELY, "--fidelity", "released")
@@ -32,7 +32,7 @@ def finished(tmp_path_factory):
 
 
 @pytest.mark.smoke
-def test_a_run_leaves_what_is_documented(finished):
+def test_a_run_writes_the_documented_files(finished):
     folder, printed = finished
     files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
     expected = {"config.toml", "manifest.json", "summary.json", "final.npz", "agents/living.parquet"}
@@ -151,7 +151,7 @@ def test_a_signal_ends_after_the_window_and_keeps_everything(tmp_path, name):
     folder = tmp_path / "out"
     command = ["hedon", "run", "baseline", "--steps", "10000000", "--out", str(folder), *QUICK, "--checkpoint", "0"]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    process = subprocess.Popen(command, **pipes, preexec_fn=heed_signals)  # the tests themselves may ignore some
+    process = subprocess.Popen(command, **pipes, preexec_fn=heed_signals)  # the test process itself may ignore some
     try:
         wait_for(folder / "population" / "part-000000.parquet", 120.0)
         process.send_signal(getattr(signal, name))
@@ -191,7 +191,7 @@ def test_names_are_printed_as_they_are(tmp_path):
         assert f"/{name}" in answer_of("report", tmp_path / name, "--figures", "none").stdout
 
 
-def test_results_can_be_read_while_the_run_goes_on(tmp_path):
+def test_results_can_be_read_during_the_run(tmp_path):
     folder = tmp_path / "out"
     command = ["hedon", "run", "baseline", "--steps", "10000000", "--out", str(folder), *QUICK, "--no-report"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -204,7 +204,7 @@ def test_results_can_be_read_while_the_run_goes_on(tmp_path):
         process.wait(timeout=60)
 
 
-def test_extinction_is_said_and_recorded(tmp_path):
+def test_extinction_is_reported_and_recorded(tmp_path):
     lethal = ("--set", "hazard.kappa=1", "--set", "energy.initial=0", "--set", "birth.kappa=0")
     answer = answer_of("run", "baseline", "--steps", 20_000, "--out", tmp_path / "out", *lethal, "--no-report")
     assert answer.returncode == 0, answer.stderr
@@ -217,7 +217,7 @@ def test_extinction_is_said_and_recorded(tmp_path):
 
 
 def heed_signals():
-    """In a new process: signals do what they do by default, whatever this one ignores."""
+    """Restores the default signal handlers in a new process, even if this one ignores some."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
 
@@ -240,7 +240,7 @@ def test_seeds_are_read(text, seeds):
 @pytest.mark.parametrize(
     "text", ["", "a", "3-1", "-1", "1,,2", "1-", "9223372036854775808", "1,1-2", "0-99999", "1,000", "1-010"]
 )
-def test_seeds_that_are_none_are_refused(text):
+def test_invalid_seeds_are_refused(text):
     with pytest.raises(hedon.ArgumentError, match="seeds: "):
         parse_seeds(text)
 

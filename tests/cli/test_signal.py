@@ -1,4 +1,4 @@
-"""Signals end every command that runs worlds in the same way: with the shell's exit code, and nothing lost."""
+"""Signals end every command that runs worlds in the same way: with the shell's exit code and without loss."""
 
 import json
 import os
@@ -32,7 +32,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a sweep's file and a finished run."""
+    """A folder with a sweep file and a finished run."""
     folder = tmp_path_factory.mktemp("signal")
     (folder / "cost.toml").write_text(SWEEP)
     answer = hedon("run", "small", "--steps", "1024", "--out", "begun", "--no-report", cwd=folder)
@@ -41,7 +41,7 @@ def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _heed() -> None:
-    """In a new process: signals do what they do by default, whatever this one ignores."""
+    """Restores the default signal handlers in a new process, even if this one ignores some."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
 

@@ -35,23 +35,23 @@ main()
 """
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert answer.returncode == 130
-    assert answer.stderr.strip() in ("hedon: interrupted", "")  # by us, or by the parser of commands
+    assert answer.stderr.strip() in ("hedon: interrupted", "")  # by hedon, or by the command-line parser
 
 
-def test_the_installed_command_begins_there() -> None:
+def test_the_installed_command_calls_the_main_of_cli_start() -> None:
     (script,) = entry_points(group="console_scripts", name="hedon")
     assert script.value == "hedon.cli.start:main"
 
 
 @pytest.mark.parametrize("command", ["report", "resume", "branch", "check"])
-def test_a_path_that_no_file_system_takes_is_a_message(command: str) -> None:
+def test_a_path_that_no_file_system_accepts_gets_a_message(command: str) -> None:
     answer = hedon(command, "a" * 300)
     assert answer.returncode == 2
     assert answer.stderr.strip().endswith("File name too long")
     assert "Traceback" not in answer.stderr
 
 
-def test_a_folder_whose_name_is_no_unicode_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+def test_a_folder_whose_name_is_not_unicode_is_refused_before_anything_is_written(tmp_path: Path) -> None:
     name = os.fsdecode(b"run\xff")
     for command in (
         ["run", "small", "--steps", "3", "--out", name],
@@ -66,7 +66,7 @@ def test_a_folder_whose_name_is_no_unicode_is_refused_before_anything_is_written
     assert not list(tmp_path.iterdir())
 
 
-def test_arguments_that_are_no_unicode_leave_a_manifest_that_can_be_read(tmp_path: Path) -> None:
+def test_arguments_that_are_not_unicode_leave_a_readable_manifest(tmp_path: Path) -> None:
     (tmp_path / os.fsdecode(b"in\xff")).mkdir()
     config = tmp_path / os.fsdecode(b"in\xff") / "my.toml"
     config.write_text('preset = "small"\npopulation.capacity = 8\npopulation.initial_count = 8\n')

@@ -1,4 +1,4 @@
-"""Every mechanism and every setting has a case: a new one without any fails here."""
+"""Every mechanism and every setting has a case; a new one without a case fails here."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -14,11 +14,11 @@ from hedon.config.schema.settings import changes_worlds
 from hedon.config.schema.species import PER_SPECIES, SpeciesConfig
 
 AS_DATA = {"world.founders": "founders", "world.networks": "networks"}
-"""Settings that a run sets by itself, with what mechanisms call them."""
+"""Settings that a run sets itself, with the names that mechanisms use for them."""
 
 
 def every_setting(section: type = Config, path: str = "") -> Iterator[tuple[str, tuple[str, ...], Any]]:
-    """The path of every setting in a file of one species (`*` for names), its choices and its default."""
+    """The path of every setting in a single-species file (`*` for names), its choices and its default."""
     for name, setting in settings(section).items():
         if changes_worlds(f"{path}{name}"):
             yield path + name, setting.choices, setting.default
@@ -37,13 +37,13 @@ def general(path: tuple[str, ...]) -> str:
             inner = sections(here)[told[-1]]
             here = inner.type
             if inner.repeated:
-                words = words[-1:] if told[-1] == "set" else words[1:]  # which names a whole path
+                words = words[-1:] if told[-1] == "set" else words[1:]  # the key of `set` is a whole path
                 told.append("*")
     return ".".join(told)
 
 
 def tried() -> dict[str, list[object]]:
-    """The values that the cases and their draws have for each setting."""
+    """The values of each setting in the mechanisms and their draws."""
     found: dict[str, list[object]] = {}
     for table in (BASE, *(each.settings for each in ALL)):
         for path, value in table.items():

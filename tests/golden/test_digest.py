@@ -1,8 +1,9 @@
-"""Digests of short lives: results that change do so knowingly.
+"""Digests of short lives, so that results never change unnoticed.
 
-Two kinds: of the bytes of the state, and of quantities by their names, which stay equal when only memory or the form
-of settings changes. After a change that is meant to change results: `PYTHONPATH=tests python -m golden.test_digest`
-writes new ones, and says which quantities differ. AVX2 and AVX-512 have the same bits, and so one table.
+There are two kinds: digests of the bytes of the state, and digests of named quantities, which stay equal if only memory
+layout or the form of settings changes. AVX2 and AVX-512 give the same bits, and so share one table. After an intended
+change of results, write new digests and list the quantities that differ:
+`PYTHONPATH=tests python -m golden.test_digest`
 """
 
 import json
@@ -21,17 +22,17 @@ from hedon import _engine
 GOLDEN = Path(__file__).with_name("digest.json")
 WIDE, PORTABLE = "wide", "portable"
 SHOWN = 8
-"""Names of quantities in a message."""
+"""Maximum number of quantities listed in a message."""
 AGAIN = "if it was meant to: PYTHONPATH=tests uv run --extra rules python -m golden.test_digest"
 
 
 def table_of(kernel: str) -> str:
-    """The table that has the results of an instruction set."""
+    """The table with the results of an instruction set."""
     return PORTABLE if kernel == PORTABLE else WIDE
 
 
 def entry(state: str, quantities: Quantities, table: str) -> dict[str, Any]:
-    """What is recorded of a life: of the portable kernel only one digest of all names."""
+    """The record of a life; for the portable kernel, with a single digest of all quantities."""
     return {"state": state, "named": short_of(quantities) if table == PORTABLE else quantities}
 
 
@@ -59,7 +60,7 @@ def test_short_lives_keep_their_bits(name, kernel, recorded, tmp_path):
     if needs_numba(name):
         pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
     table = table_of(kernel)
-    assert name in recorded[table], f"nothing is recorded of {name}: {AGAIN}"
+    assert name in recorded[table], f"nothing is recorded for {name}: {AGAIN}"
     found = entry(*live(cases()[name], tmp_path, kernel), table)
     differ = differences(recorded[table][name]["named"], found["named"])
     assert not differ, f"{name} differs in {'; '.join(differ)}; {AGAIN}"
@@ -72,21 +73,21 @@ def needs_numba(name: str) -> bool:
     return name.partition(".")[2] in {*rules, "rules_of_two"}
 
 
-def test_nothing_is_recorded_that_is_no_case(recorded):
+def test_exactly_the_cases_are_recorded(recorded):
     for table in (WIDE, PORTABLE):
         assert set(recorded[table]) == set(cases())
 
 
 @pytest.mark.parametrize("name", mechanisms())
 def test_a_mechanism_makes_a_difference(name, recorded):
-    """Else its case would say nothing."""
+    """Otherwise its case would test nothing."""
     own = recorded[WIDE][f"mechanism.{name}"]["named"]
     plain = recorded[WIDE][f"plain.{mechanisms()[name].species}"]["named"]
     assert differences(plain, own)
 
 
 def write() -> None:
-    """Writes the digests of this processor's instruction sets, and says what differs from those before."""
+    """Writes the digests of AVX2 and the portable kernel, and lists the differences from the previous ones."""
     before = json.loads(GOLDEN.read_text()) if GOLDEN.exists() else {}
     after: dict[str, dict[str, Any]] = {}
     with tempfile.TemporaryDirectory() as folder:

@@ -1,6 +1,6 @@
-"""Programs for other machines have the bits of this one: lanes, floats at the border of denormal numbers, whole lives.
+"""Programs for other machines give the same bits as on this one: lanes, floats close to denormals, whole lives.
 
-The lives are the golden cases without Python: what a caller gives them beside settings stays out.
+The lives are the golden cases that need no Python: those with Python rules or with data besides settings are omitted.
 """
 
 import json
@@ -24,14 +24,14 @@ DIGESTS = json.loads((ROOT / "tests" / "golden" / "digest.json").read_text())
 WHOLE_STEPS = 1000 + STEPS
 RUNNING = [machine for machine in MACHINES.values() if machine.runs]
 FORMATS = {
-    "aarch64-macos": bytes.fromhex("cffaedfe0c000001"),  # Mach-O of 64 bits, then the processor
+    "aarch64-macos": bytes.fromhex("cffaedfe0c000001"),  # 64-bit Mach-O, then the processor
     "x86_64-macos": bytes.fromhex("cffaedfe07000001"),
 }
 
 
 @pytest.fixture(scope="module")
 def texts(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The texts of the golden cases, by name."""
+    """The golden cases as text files, by name."""
     folder = tmp_path_factory.mktemp("texts")
     called = {name for name, each in mechanisms().items() if each.founders or each.networks}
     found = {}
@@ -55,7 +55,7 @@ def machine(request: pytest.FixtureRequest) -> Iterator[Machine]:
 
 
 def digests(machine: Machine, texts: dict[str, Path], steps: int, *how: str) -> dict[str, str]:
-    """The digests of lives, by the names of their cases."""
+    """The digests of lives, by case name."""
     kernel, threads, flush = how
     program = build_life(machine)
     lines = run(machine, program, kernel, threads, str(steps), flush, *map(str, texts.values()))
@@ -70,7 +70,7 @@ def of_kind(texts: dict[str, Path], *kinds: str) -> dict[str, Path]:
     return {name: path for name, path in texts.items() if name.startswith(kinds)}
 
 
-def test_lanes_and_floats_have_the_bits_of_x86(machine: Machine, tmp_path: Path):
+def test_lanes_and_floats_have_the_same_bits_as_on_x86(machine: Machine, tmp_path: Path):
     for lanes in machine.lanes:
         check_lanes(run(machine, build_lanes(machine, lanes, tmp_path)), lanes)
 
@@ -92,8 +92,8 @@ def test_a_whole_window_has_the_golden_digest_on_three_threads(machine: Machine,
     assert digests(machine, whole, WHOLE_STEPS, machine.fused, "3", "flush") == recorded(whole)
 
 
-def test_denormals_that_are_kept_change_no_bit(machine: Machine, texts: dict[str, Path]):
-    """Nor would one that is flushed before rounding instead of after it."""
+def test_keeping_denormals_changes_no_bit(machine: Machine, texts: dict[str, Path]):
+    """So flushing before rounding instead of after it changes no bit either."""
     some = of_kind(texts, "preset", "combination", "mechanism.smell", "mechanism.frozen")
     assert digests(machine, some, STEPS, machine.fused, "2", "keep") == recorded(some)
 

@@ -1,4 +1,4 @@
-"""The native programs of long tests fit the engine: else one that changes a call is not seen before a release."""
+"""The native programs of long tests match the engine; otherwise a changed call would go unnoticed until a release."""
 
 import os
 import shlex
@@ -7,7 +7,7 @@ import subprocess
 from project_files import ROOT
 
 
-def test_the_program_of_lives_compiles(tmp_path):
+def test_the_program_for_lives_compiles(tmp_path):
     compiler = shlex.split(os.environ.get("CXX") or "c++")
     command = [*compiler, "-std=c++20", "-Wall", "-Wextra", "-Werror", "-Iengine", "-c", "tests/native/life.cpp"]
     command += ["-o", str(tmp_path / "life.o")]

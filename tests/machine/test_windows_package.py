@@ -1,4 +1,4 @@
-"""The package for Windows, under Wine: the wheel that is published, in a Python for Windows."""
+"""The Windows package under Wine: the published wheel in a Python for Windows."""
 
 import json
 from pathlib import Path
@@ -34,7 +34,7 @@ def test_the_suite_passes(windows: WindowsPython, suite: str):
 
 
 def test_a_run_moves_between_windows_and_linux(windows: WindowsPython, tmp_path: Path):
-    """In a folder whose name is awkward. Half of it is made on one system and half on the other: equal records."""
+    """Half of the run is made on each system, in a folder with an awkward name; the records must be equal."""
     whole, there, here = tmp_path / "whole", tmp_path / "Größe und 空間", tmp_path / "here"
     assert hedon("run", *RUN, "--steps", "600", "--out", str(whole)).returncode == 0
     windows.hedon("run", *RUN, "--steps", "300", "--out", there.name, folder=tmp_path)
@@ -60,8 +60,8 @@ def test_reports_pages_and_tables_are_made(windows: WindowsPython, tmp_path: Pat
     assert "kanagawa-doya-2024: " in windows.hedon("study", "list", folder=tmp_path)
 
 
-def test_a_sweep_has_the_table_of_linux(windows: WindowsPython, tmp_path: Path):
-    """By two processes."""
+def test_a_sweep_gives_the_same_table_as_on_linux(windows: WindowsPython, tmp_path: Path):
+    """Two processes run it on Windows."""
     file = sweep_file(tmp_path)
     windows.hedon("sweep", "run", file.name, "--out", "there", "--workers", "2", folder=tmp_path)
     assert hedon("sweep", "run", file, "--out", tmp_path / "here", "--workers", "1").returncode == 0
