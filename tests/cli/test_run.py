@@ -49,7 +49,7 @@ def test_the_manifest_says_how_to_repeat_the_run(finished):
     assert manifest["seeds"] == [3, 5]
     assert manifest["status"] == "finished"
     assert manifest["steps_done"] == [1300, 1300]
-    assert manifest["backend"] in ("avx512", "avx2", "portable")
+    assert manifest["backend"] in ("avx512", "avx2", "neon", "portable")
     assert manifest["fidelity"] == "released"
     assert manifest["name"] == "poison"
     assert manifest["modified"] is True
