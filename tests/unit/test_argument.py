@@ -1,4 +1,4 @@
-"""What Python may be asked: each wrong argument is named, with its value and what is allowed."""
+"""Argument errors in the Python API: each message names the argument, its value and what is allowed."""
 
 from pathlib import Path
 from typing import Any, cast
@@ -47,14 +47,14 @@ def test_a_plan_names_what_is_wrong(changes, words):
     assert words in str(caught.value)
 
 
-def test_a_plan_takes_what_means_the_same():
+def test_a_plan_accepts_equivalent_values():
     made = plan(seeds=range(1, 3), out="folder", steps=np.int64(70), threads=np.int32(1))
     assert (made.seeds, made.out, made.steps, made.threads) == ((1, 2), Path("folder"), 70, 1)
     assert type(made.steps) is int
     assert plan(seeds=np.array([4, 5])).seeds == (4, 5)
 
 
-def test_paths_may_be_texts_everywhere(tmp_path):
+def test_paths_may_be_strings_everywhere(tmp_path):
     out = str(tmp_path / "run")
     quick = hedon.load_config("small", overrides=["world.rollout_steps=64", "learning.minibatch_size=32"])
     assert hedon.run(hedon.RunPlan(quick, [1], 70, out, 1)).status == "finished"
@@ -79,17 +79,17 @@ def test_paths_may_be_texts_everywhere(tmp_path):
         (lambda: hedon.resume(cast(Any, None)), "folder"),
     ],
 )
-def test_other_calls_do_too(call, words):
+def test_other_calls_name_what_is_wrong(call, words):
     with pytest.raises(hedon.ArgumentError) as caught:
         call()
     assert words in str(caught.value)
 
 
-def test_one_override_need_not_stand_in_a_list():
+def test_a_single_override_need_not_be_in_a_list():
     assert hedon.load_config("small", overrides="energy.initial=7").species["agent"].energy.initial == 7.0
 
 
-def test_every_error_is_public_and_can_be_caught_as_one():
+def test_every_error_is_public_and_a_hedon_error():
     names = ("ArgumentError", "ConfigError", "EngineError", "MemoryNeedError", "RecordError")
     for name in names:
         assert issubclass(getattr(hedon, name), hedon.HedonError)

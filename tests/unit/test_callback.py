@@ -1,4 +1,4 @@
-"""Callbacks of runs: what they hear, that TensorBoard reads what was written, and what a notebook shows."""
+"""Run callbacks: what they receive, that TensorBoard can read the log, and what a notebook shows."""
 
 import re
 from pathlib import Path
@@ -27,7 +27,7 @@ def test_metrics_are_the_rows_of_the_table(tmp_path: Path, preset: str, override
         calls.append(moment.step)
         for step, values in metrics(moment):
             for name, value in values.items():
-                assert (step, name) not in found, "each number once"
+                assert (step, name) not in found, "each number is reported once"
                 found[step, name] = value
 
     hedon.run(plan(tmp_path / "run", preset, overrides), callbacks=[log, lambda moment: None])
@@ -41,7 +41,7 @@ def test_metrics_are_the_rows_of_the_table(tmp_path: Path, preset: str, override
             assert found.get((row["step"], f"{place}{column}")) == pytest.approx(row[column])
 
 
-def test_tensorboard_reads_what_was_written(tmp_path: Path) -> None:
+def test_tensorboard_can_read_the_log(tmp_path: Path) -> None:
     pytest.importorskip("tensorboard")
     from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
@@ -55,7 +55,7 @@ def test_tensorboard_reads_what_was_written(tmp_path: Path) -> None:
         assert [event.value for event in events] == pytest.approx(rows[column].to_list(), rel=1e-6)
 
 
-def test_resumed_runs_and_branches_are_heard(tmp_path: Path) -> None:
+def test_callbacks_follow_resumed_runs_and_branches(tmp_path: Path) -> None:
     heard: list[Moment] = []
     hedon.run(plan(tmp_path / "run"))
     hedon.resume(tmp_path / "run", steps=400, callbacks=[heard.append])
@@ -63,7 +63,7 @@ def test_resumed_runs_and_branches_are_heard(tmp_path: Path) -> None:
     assert {(moment.first, moment.steps) for moment in heard} == {(330, 400), (400, 470)}
 
 
-def test_what_is_no_callback_is_refused_and_a_fault_of_one_keeps_the_records(tmp_path: Path) -> None:
+def test_a_non_callback_is_refused_and_a_failing_callback_keeps_the_records(tmp_path: Path) -> None:
     wrong: Any = [3]
     with pytest.raises(hedon.ArgumentError, match="callbacks: must be functions of a moment, not 3"):
         hedon.run(plan(tmp_path / "run"), callbacks=wrong)
@@ -106,7 +106,7 @@ def test_a_notebook_shows_one_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def test_the_guides_examples_log_to_trackers_offline(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tracker: str
 ) -> None:
-    """The code of the page itself, by the library itself, without a network."""
+    """Run the code from the guide with the real library, without a network."""
     library: Any = pytest.importorskip(tracker)
     monkeypatch.setenv("WANDB_DIR", str(tmp_path))
     monkeypatch.setenv("MLFLOW_TRACKING_URI", f"sqlite:///{tmp_path / 'mlflow.db'}")
@@ -117,7 +117,7 @@ def test_the_guides_examples_log_to_trackers_offline(
     hedon.run(plan(tmp_path / "run"), callbacks=[names[f"to_{tracker}"]])
     rows = hedon.open_run(tmp_path / "run").population().filter(pl.col("seed") == 2)
     if tracker == "wandb":
-        names["log"].log({"over": 1}, step=1000)  # a step is written when the next one comes
+        names["log"].log({"over": 1}, step=1000)  # a step is written when the next one starts
         assert names["log"].summary["seed_2/alive"] == rows["alive"][-1]
         library.finish()
         assert list(tmp_path.glob("wandb/offline-run-*/*.wandb"))

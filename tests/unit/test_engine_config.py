@@ -1,4 +1,4 @@
-"""Every setting arrives in the engine, and nothing that it does not know."""
+"""Every setting reaches the engine, which refuses settings that it does not know."""
 
 import re
 from typing import Any
@@ -33,7 +33,7 @@ def test_every_setting_arrives(preset, fidelity):
 
 
 def change(tree: Any, path: str) -> Any:
-    """A copy of a nested structure in which the number at a path is larger by 1."""
+    """A copy of a nested structure with 1 added to the number at a path."""
     head, _, rest = path.partition(".") if not path.startswith("[") else path[1:].partition("]")
     key = int(head) if path.startswith("[") else head
     copied: Any = dict(tree) if isinstance(tree, dict) else list(tree)
@@ -41,8 +41,8 @@ def change(tree: Any, path: str) -> Any:
     return copied
 
 
-def test_a_changed_setting_changes_what_arrives_and_nothing_else():
-    # Each number in turn, so that no two fields can be mixed up.
+def test_changing_one_setting_changes_only_that_setting_in_the_engine():
+    # Change each number in turn, to detect two fields that are swapped.
     given = engine_config(load_config("relocation"))
     before = flat(_engine.read_config(given))
     numbers = [path for path, value in before.items() if isinstance(value, int | float)]
@@ -61,7 +61,7 @@ def test_a_changed_setting_changes_what_arrives_and_nothing_else():
         ("population", "capacity", "many", "species[0].population.capacity: wrong type"),
     ],
 )
-def test_what_does_not_fit_is_named(section, name, value, message):
+def test_an_invalid_setting_is_named(section, name, value, message):
     given = engine_config(load_config("baseline"))
     table = given[section] if section in given else given["species"][0][section]
     if value is None:
@@ -77,7 +77,7 @@ def test_what_does_not_fit_is_named(section, name, value, message):
     [("observed", 0, 2), ("observed", 4, 1), ("recorded", 1, 1), ("recorded", 5, 2)],
     ids=["velocity", "store", "store_before", "force"],
 )
-def test_the_engine_refuses_a_channel_whose_source_has_no_such_number(which, i, index):
+def test_the_engine_refuses_a_channel_whose_index_is_out_of_range(which, i, index):
     given = engine_input(load_config("baseline"))
     for number in (index - 1, index):
         given.settings["layout"][0][which][i]["index"] = number

@@ -1,4 +1,4 @@
-"""What a world in memory loads: numpy, with what it loads itself, and nothing else."""
+"""An in-memory world imports numpy and what numpy itself imports, and nothing else."""
 
 import json
 import subprocess
@@ -18,7 +18,7 @@ print(json.dumps([alone, sorted({name.partition(".")[0] for name in set(sys.modu
 """
 
 
-def test_a_world_in_memory_loads_numpy_alone() -> None:
+def test_an_in_memory_world_imports_only_numpy() -> None:
     said = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True).stdout
     alone, all_of_it = (
         {name for name in names if name not in sys.stdlib_module_names and not name.startswith("_")}
@@ -28,7 +28,7 @@ def test_a_world_in_memory_loads_numpy_alone() -> None:
     assert all_of_it == {"hedon", "lazy_loader", "numpy"}
 
 
-def test_studies_are_listed_without_loading_what_draws_or_computes() -> None:
+def test_listing_studies_imports_no_heavy_library() -> None:
     heavy = ("matplotlib", "scipy.special._ufuncs", "scipy.sparse._base", "scipy.stats._stats_py")
     program = (
         f"import sys; from hedon.study.catalogue import installed; installed(); print({set(heavy)} & set(sys.modules))"

@@ -1,4 +1,4 @@
-"""Energy, birth and death, food: each rule alone, in a scene made for it."""
+"""Energy, birth, death and food: each rule in isolation, in a scene built for it."""
 
 import numpy as np
 import pytest
@@ -22,14 +22,14 @@ def test_living_costs_the_basic_rate():
     assert _agents(simulation)["energy"][0] == pytest.approx(10.0 - 100 * 1e-3, abs=1e-6)
 
 
-def test_action_costs_in_proportion_to_the_norm_of_the_forces():
+def test_action_cost_is_proportional_to_the_norm_of_the_forces():
     simulation = make_simulation("motor.min_force=79.999", "motor.max_force=80", "energy.basic_cost=0", *SAFE)
     set_scene(simulation, [(240, 180, 0.0)], energy=10.0)
     simulation.run(50)
     assert _agents(simulation)["energy"][0] == pytest.approx(10.0 - 50 * 2e-5 * 80 * np.sqrt(2), abs=1e-5)
 
 
-def test_energy_stops_at_zero_and_what_could_not_be_paid_is_forgiven():
+def test_energy_stops_at_zero_and_the_unpaid_cost_is_forgiven():
     simulation = make_simulation(*STILL, *SAFE)
     set_scene(simulation, [(240, 180, 0.0)], energy=0.05)
     simulation.run(100)
@@ -41,22 +41,22 @@ def test_starvation_can_kill():
     simulation = make_simulation(*STILL, *SAFE, 'energy.at_zero="death"')
     set_scene(simulation, [(240, 180, 0.0)], energy=0.0505)
     simulation.run(200)
-    assert simulation.worlds[0].extinct_step == 51  # 50 steps are paid for, the next is not
+    assert simulation.worlds[0].extinct_step == 51  # the energy covers 50 steps but not the next
     assert simulation.engine.take_rows(0)["death_step"][0] == 51
 
 
-def test_who_starves_bears_no_child_in_its_last_step():
+def test_a_starving_agent_bears_no_child_in_its_last_step():
     fertile = ("birth.kappa=1", "birth.beta=100", *DEATHLESS, 'energy.at_zero="death"', "energy.basic_cost=1")
     simulation = make_simulation(*STILL, *fertile)
     crowd = [
         (x, y, 0.0) for x in range(60, 420, 60) for y in range(60, 300, 60)
-    ]  # at energy 0, half of them draw a child
+    ]  # at energy 0, half of them draw a birth
     set_scene(simulation, crowd, energy=0.5)
     simulation.run(1)
     counters = simulation.worlds[0].counters
     assert simulation.worlds[0].extinct_step == 1
     assert counters["births"] + counters["births_failed_space"] == 0
-    set_scene(simulation, crowd, energy=1.5)  # who can pay is not held back
+    set_scene(simulation, crowd, energy=1.5)  # agents that can pay are not held back
     simulation.run(1)
     counters = simulation.worlds[0].counters
     assert counters["births"] + counters["births_failed_space"] == len(crowd)
@@ -102,7 +102,7 @@ def test_the_mouth_spans_sixty_degrees_to_either_side(degrees, eaten):
 @pytest.mark.parametrize(
     ("degrees", "eaten"), [(0, 1), (35, 1), (45, 0), (-15, 1), (-25, 0), (190, 0), (-170, 0), (100, 0)]
 )
-def test_a_lopsided_mouth_spans_from_its_own_middle(degrees, eaten):
+def test_an_off_center_mouth_spans_around_its_own_center(degrees, eaten):
     mouth = ("sensor.mouth_spread=30", "sensor.mouth_center=10")
     simulation = make_simulation(*STILL, *SAFE, *mouth, "food.normal.growth_rate=0")
     angle = 2.0 + np.radians(degrees)
@@ -129,7 +129,7 @@ def test_an_agent_may_eat_several_foods_at_once():
     assert _agents(simulation)["eaten"][0, 0] == 3
 
 
-def test_food_grows_by_the_true_floor_of_its_number():
+def test_the_number_of_foods_is_the_exact_floor_of_the_supply():
     simulation = make_simulation(*STILL, *SAFE, "food.normal.growth_rate=0.2")
     set_scene(simulation, [(240, 180, 0.0)])
     present = []
@@ -157,7 +157,7 @@ def test_gaussian_food_lies_around_its_center():
     assert 30 < x.std() < 70
 
 
-def test_switching_food_moves_on_after_the_meals():
+def test_switching_food_moves_to_the_next_center_after_enough_meals():
     switching = ("food.normal.placement.switch_after=2", "food.normal.growth_rate=0")
     simulation = make_simulation(*STILL, *SAFE, *switching, preset="relocation")
     set_scene(simulation, [(240, 180, 0.0)], [(240, 193.5)])
@@ -208,7 +208,7 @@ def test_births_follow_the_birth_function_and_share_the_energy():
     assert np.all(simulation.worlds[0].observations()[children][:, 72:92] == 0)
 
 
-def test_a_full_world_lets_nobody_be_born():
+def test_no_agent_is_born_in_a_full_world():
     full = ("population.capacity=30", "population.initial_count=30", "birth.kappa=1", *DEATHLESS)
     simulation = make_simulation(*full)
     simulation.run(5)
@@ -228,7 +228,7 @@ def test_without_room_births_fail_and_cost_nothing():
     assert counters["energy_shared"] == 0.0
 
 
-def test_children_stand_free_and_inside():
+def test_children_are_placed_inside_the_walls_and_clear_of_others():
     simulation = make_simulation("birth.kappa=0.02", *DEATHLESS, *STILL)
     simulation.run(60)
     agents, foods = _agents(simulation), simulation.worlds[0].foods()
@@ -254,7 +254,7 @@ def test_extinction_ends_a_world_and_leaves_the_others():
     assert world.step == world.extinct_step
 
 
-def test_only_those_who_lived_through_the_window_learn():
+def test_only_agents_that_lived_through_the_window_learn():
     simulation = make_simulation(*QUICK, "birth.kappa=0.01", *DEATHLESS)
     simulation.run(63)
     world = simulation.worlds[0]
@@ -268,7 +268,7 @@ def test_only_those_who_lived_through_the_window_learn():
     assert world.counters["learners"] == 50
 
 
-def test_more_first_foods_than_tries_find_their_places():
+def test_more_initial_foods_than_tries_can_be_placed():
     """Each food has its own tries."""
     many = 25_000
     large = ("arena.width=4000", "arena.height=3000", f"food.normal.capacity={many}")
@@ -279,14 +279,14 @@ def test_more_first_foods_than_tries_find_their_places():
     assert len(np.unique(places, axis=0)) == many
 
 
-def test_a_food_without_a_place_is_named():
-    """A rectangle that has room for one food alone."""
+def test_food_that_cannot_be_placed_is_an_error():
+    """A rectangle with room for only one food."""
     narrow = ('food.normal.placement.form="rectangle"', "food.normal.placement.centers=[[100.0, 100.0]]")
     with pytest.raises(EngineError, match="initial_placement"):
         make_simulation(*narrow, "food.normal.placement.sd=[0.5, 0.5]", "food.normal.initial_count=2")
 
 
-def test_no_place_for_the_founders_is_named():
+def test_founders_that_cannot_be_placed_are_an_error():
     bars = [[x, 20.0, x, 340.0] for x in range(30, 455, 15)]
     bars += [[20.0, y, 460.0, y] for y in range(30, 335, 15)]
     with pytest.raises(EngineError, match="initial_placement"):
@@ -295,7 +295,7 @@ def test_no_place_for_the_founders_is_named():
 
 @pytest.mark.parametrize(("chance", "deaths"), [(4e-8, 0), (6e-8, 1)])
 def test_chances_of_death_far_below_the_spacing_of_floats_are_kept(chance, deaths):
-    # Of seed 590, agent 20 draws 5.2e-8 in step 356: less than 2^-24, the spacing of uniform floats.
+    # With seed 590, agent 20 draws 5.2e-8 in step 356, which is less than 2^-24, the spacing of uniform floats.
     ageless = (f"hazard.alpha_age={chance}", "hazard.beta_age=0", "hazard.kappa=0")
     simulation = make_simulation(*STILL, *CHILDLESS, *ageless, seeds=(590,))
     simulation.run(357)
@@ -304,7 +304,7 @@ def test_chances_of_death_far_below_the_spacing_of_floats_are_kept(chance, death
 
 @pytest.mark.parametrize(("chance", "tries"), [(3e-8, 0), (4e-8, 1)])
 def test_chances_of_birth_far_below_the_spacing_of_floats_are_kept(chance, tries):
-    # Of seed 1890, agent 49 draws 3.4e-8 in step 82.
+    # With seed 1890, agent 49 draws 3.4e-8 in step 82.
     simulation = make_simulation(*STILL, *DEATHLESS, f"birth.kappa={2 * chance}", "birth.beta=0", seeds=(1890,))
     simulation.run(83)
     counters = simulation.worlds[0].counters
@@ -314,7 +314,7 @@ def test_chances_of_birth_far_below_the_spacing_of_floats_are_kept(chance, tries
 def test_a_mouth_all_around_has_no_gap():
     simulation = make_simulation(*STILL, *SAFE, "food.normal.growth_rate=0", "sensor.mouth_spread=180")
     x, y = (axis.ravel() for axis in np.meshgrid(40 + 44.0 * np.arange(10), 40 + 50.0 * np.arange(6)))
-    for seed in (16, 26, 81):  # of food straight behind, one in thousands lay beyond a cosine of -1 by rounding
+    for seed in (16, 26, 81):  # for food straight behind, rounding put one cosine in thousands below -1
         angle = np.random.default_rng(seed).uniform(0, 2 * np.pi, len(x))
         behind = np.column_stack([x + 13.5 * np.sin(angle), y - 13.5 * np.cos(angle)])
         set_scene(simulation, np.column_stack([x, y, angle]), behind)

@@ -1,4 +1,4 @@
-"""What the engine offers to those who measure: the processor's rates, and memory before it is taken."""
+"""The engine's probes of the processor: the speed of reading and of computing."""
 
 import threading
 import time
@@ -23,7 +23,7 @@ def test_rates_are_positive_and_bad_sizes_are_refused(kernel):
 @pytest.mark.parametrize(
     ("probe", "arguments"), [("calibrate", ("portable", 60_000_000)), ("read_rate", ("portable", 1 << 20, 12_000))]
 )
-def test_other_threads_go_on_while_a_rate_is_measured(probe, arguments):
+def test_other_threads_keep_running_while_a_rate_is_measured(probe, arguments):
     worker = threading.Thread(target=getattr(_engine.kernel, probe), args=arguments)
     worker.start()
     seen = [time.perf_counter()]

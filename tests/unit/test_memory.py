@@ -1,4 +1,4 @@
-"""A run that does not fit into memory is refused before it begins."""
+"""A run that does not fit in memory is refused before it starts."""
 
 import os
 import subprocess
@@ -20,7 +20,7 @@ from hedon.experiment.simulation import SCRATCH_VARIABLE
 WORLD = ("networks", "moments and observations", "the rest of rollouts", "physics", "rest of the worlds")
 
 
-def test_the_estimate_is_what_is_reserved():
+def test_the_estimate_matches_the_reserved_memory():
     config, simulation = load_config("poison"), make_simulation(preset="poison", threads=2)
     need = memory_needed(config, 1, 2)
     assert sum(need[name] for name in WORLD) >= simulation.engine.bytes_per_world
@@ -28,7 +28,7 @@ def test_the_estimate_is_what_is_reserved():
     assert five - alone == pytest.approx(4 * simulation.engine.bytes_per_world)
 
 
-def test_each_part_is_of_the_size_that_its_arrays_have():
+def test_each_part_has_the_size_of_its_arrays():
     simulation, need = make_simulation(), memory_needed(load_config("baseline"), 1, 1)
     view = simulation.worlds[0].view
     acting = ("params", "folded_bias", "packed_weights")
@@ -38,7 +38,7 @@ def test_each_part_is_of_the_size_that_its_arrays_have():
         assert need[what] == pytest.approx(sum(view(name).nbytes for name in names), rel=5e-3)
 
 
-def test_a_run_that_does_not_fit_is_refused_by_its_parts(tmp_path, monkeypatch):
+def test_the_refusal_of_a_run_that_does_not_fit_lists_its_parts(tmp_path, monkeypatch):
     monkeypatch.delenv(SCRATCH_VARIABLE, raising=False)
     monkeypatch.setattr(memory, "memory_present", lambda: 10**8)
     words = r"\d GB.*networks \d.*moments and observations .*rollouts .*physics .*records"
@@ -50,7 +50,7 @@ def test_a_run_that_does_not_fit_is_refused_by_its_parts(tmp_path, monkeypatch):
     assert not folder.exists()
 
 
-def test_the_command_ends_with_code_2(tmp_path):
+def test_the_command_exits_with_code_2(tmp_path):
     huge = ("--seeds", "1-10000", "--set", "population.capacity=10000", "--out", tmp_path / "run")
     answer = subprocess.run(["hedon", "run", "baseline", *map(str, huge)], capture_output=True, text=True, check=False)
     assert answer.returncode == 2
@@ -63,7 +63,7 @@ def test_the_engine_knows_the_memory_of_the_machine():
     assert _engine.physical_memory() == os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
-def test_a_container_says_how_much_there_is(tmp_path: Path):
+def test_the_memory_limit_of_a_container_is_respected(tmp_path: Path):
     for name, text in (("two", "123456\n"), ("none", "max\n"), ("other", "")):
         (tmp_path / name).write_text(text)
     files = [str(tmp_path / name) for name in ("none", "other", "missing", "two")]
@@ -73,7 +73,7 @@ def test_a_container_says_how_much_there_is(tmp_path: Path):
 
 @pytest.mark.parametrize("in_files", [False, True])
 def test_memory_that_the_system_refuses_is_an_error_not_a_crash(in_files: bool, tmp_path: Path):
-    """What lies in files needs no memory, but addresses."""
+    """Arrays in files need no memory, but they do need address space."""
     code = """
 import resource
 from hedon.config.load import load_config

@@ -1,4 +1,4 @@
-"""Objects in one line and in a notebook, where text that users give is no HTML."""
+"""How objects are shown in one line and in a notebook, where users' text is escaped."""
 
 import hedon
 from hedon.shown import table_html
@@ -6,7 +6,7 @@ from hedon.shown import table_html
 BRIEF = ["world.rollout_steps=64", "learning.minibatch_size=32"]
 
 
-def test_objects_tell_what_they_are_in_one_line():
+def test_objects_describe_themselves_in_one_line():
     config = hedon.load_config("poison", overrides=[*BRIEF, "energy.basic_cost=0.01"])
     simulation = hedon.Simulation(config, [3, 4])
     simulation.run(10)
@@ -23,7 +23,7 @@ def test_objects_tell_what_they_are_in_one_line():
     assert repr(worlds).startswith("<VectorEnv driving prey in <Simulation predator (corrected): 2 worlds at step 0, ")
 
 
-def test_notebooks_show_what_differs_and_each_world():
+def test_notebooks_show_changed_settings_and_each_world():
     config = hedon.load_config("baseline", overrides=["energy.basic_cost=0.01"])
     assert "<td>energy.basic_cost</td><td>0.001</td><td>0.01</td>" in config._repr_html_()
     simulation = hedon.Simulation(config, [7])

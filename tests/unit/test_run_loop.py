@@ -6,7 +6,7 @@ from hedon.config.load import load_config
 from hedon.experiment.plan import RunPlan
 from hedon.experiment.run import run
 
-# A window in which far more die than the engine's buffer of 16 per slot holds.
+# A window with far more deaths than the engine's buffer of 16 per slot can hold.
 BRIEF = (
     "world.rollout_steps=16384",
     "learning.update_epochs=0",
@@ -34,7 +34,7 @@ class Shown:
         return self.moments[-1]
 
 
-def test_deaths_are_kept_however_many_a_window_has(tmp_path):
+def test_every_death_is_kept_however_many_a_window_has(tmp_path):
     config = load_config("baseline", overrides=BRIEF)
     run(RunPlan(config, (1,), 1500, tmp_path / "run", threads=1))
     dead = pl.read_parquet(tmp_path / "run" / "agents" / "*.parquet").filter(pl.col("death_step").is_not_null())
@@ -44,7 +44,7 @@ def test_deaths_are_kept_however_many_a_window_has(tmp_path):
     assert population["deaths"].sum() == len(dead)
 
 
-def test_the_last_thing_shown_is_the_last_row_also_within_a_window(tmp_path):
+def test_the_last_moment_shown_is_the_last_row_even_within_a_window(tmp_path):
     display = Shown()
     run(RunPlan(load_config("baseline", overrides=BRIEF), (1,), 500, tmp_path / "run", threads=1), [display.update])
     row = pl.read_parquet(tmp_path / "run" / "population" / "*.parquet").sort("step").row(-1, named=True)
@@ -55,8 +55,8 @@ def test_the_last_thing_shown_is_the_last_row_also_within_a_window(tmp_path):
     }
 
 
-def test_of_several_species_each_is_shown_with_the_step_at_which_it_died_out(tmp_path):
-    """The predators first, and the world goes on."""
+def test_each_of_several_species_is_shown_with_the_step_of_its_extinction(tmp_path):
+    """The predators die out first, and the world continues."""
 
     settings = (
         *("world.rollout_steps=256", "learning.update_epochs=0", "birth.kappa=0", "hazard.form=constant"),

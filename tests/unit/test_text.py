@@ -1,4 +1,4 @@
-"""Text from outside in messages: a path in a command that a user copies."""
+"""Paths in commands that users copy from messages."""
 
 from types import SimpleNamespace
 

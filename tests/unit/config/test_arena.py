@@ -10,7 +10,7 @@ DATA = Path(__file__).parents[2] / "data" / "walls.npz"
 
 
 @pytest.mark.parametrize("preset", ["baseline", "small", "large"])
-def test_walls_are_those_of_the_released_code(preset: str) -> None:
+def test_walls_match_those_of_the_papers_program(preset: str) -> None:
     found = walls(load_config(preset).arena)
     with np.load(DATA) as expected:
         np.testing.assert_allclose(found, expected[preset], atol=1e-4)

@@ -149,7 +149,7 @@ def test_names_of_kinds(kind: str) -> None:
         load_config("baseline", overrides=[f"food.{kind}.gives.energy=1"])
 
 
-def test_all_contradictions_come_at_once() -> None:
+def test_all_contradictions_are_reported_at_once() -> None:
     overrides = ["population.capacity=40", "energy.capacity=30", "arena.corner_radius=200"]
     with pytest.raises(ConfigError) as caught:
         load_config("centered", overrides=overrides)
@@ -160,7 +160,7 @@ def test_all_contradictions_come_at_once() -> None:
     ]
 
 
-def test_contradictions_are_told_together_with_what_is_wrong_by_itself():
+def test_contradictions_are_reported_together_with_invalid_settings():
     with pytest.raises(ConfigError) as caught:
         load_config("baseline", overrides=["learning.gamma=2", "population.initial_count=300", "arena.widht=3"])
     assert {problem.path for problem in caught.value.problems} == {
@@ -175,8 +175,8 @@ def test_a_body_with_no_area_is_refused_by_name():
         load_config("baseline", overrides=["body.radius=5e-324"])
 
 
-def test_each_species_has_limits_of_its_own():
-    """What one may have is not judged by another's limit, nor by that of the config's own sections."""
+def test_each_species_has_its_own_limits():
+    """A species is checked neither against another species' limit nor against that of the config's own sections."""
     wide = ("species.a.genome.weight_limit=50", "species.a.genome.action.initial_mean=40")
     own = ("species.b.diet.eats=[]", "food.normal.gene.initial_mean=30")
     config = load_config("baseline", overrides=[*TWO, *wide, *own])

@@ -79,7 +79,7 @@ def number(setting: doc.Setting) -> st.SearchStrategy[Any]:
     low = limits.gt if least is None else least
     high = limits.lt if limits.le is None else limits.le
     floats = st.floats(low, high, exclude_min=limits.gt is not None, exclude_max=limits.lt is not None)
-    return floats.map(lambda value: value + 0.0)  # The digest tells -0.0 from 0.0, which are equal.
+    return floats.map(lambda value: value + 0.0)  # The digest distinguishes -0.0 from 0.0, which are equal.
 
 
 NUMBERS = [
@@ -100,7 +100,7 @@ def test_any_override_survives_dump_and_load(data: st.DataObject, tmp_path_facto
     try:
         config = load_config("baseline", overrides=[f"{path}={value!r}"])
     except ConfigError:
-        reject()  # Within its range, but at odds with another setting.
+        reject()  # In range, but in conflict with another setting.
     assert flatten(config)[path] == value
     assert reload(config, tmp_path_factory.getbasetemp()) == config
     changed = value != setting.default
@@ -108,7 +108,7 @@ def test_any_override_survives_dump_and_load(data: st.DataObject, tmp_path_facto
     assert (digest(config) != digest(load_config("baseline"))) is changed
 
 
-def test_digest_knows_what_matters() -> None:
+def test_digest_ignores_names_and_colors_but_not_the_order_of_kinds() -> None:
     config = load_config("poor")
     renamed = dataclasses.replace(config, name="x", preset="y", fidelity="as_printed")
     assert digest(renamed) == digest(config)
@@ -141,7 +141,7 @@ RICH = (
     "food.normal.needs.water=1",
     "genome.action={initial_mean=1.0, initial_sd=0.2}",
 )
-"""What gives a config one entry in each of its tables."""
+"""Overrides that give a config an entry in each of its tables."""
 
 
 def rich() -> Config:
@@ -150,9 +150,9 @@ def rich() -> Config:
 
 
 def put(section: Any, path: list[str], value: Any) -> Any:
-    """A section with another value at a path below it."""
+    """A copy of a section with another value at a path below it."""
     name, *below = path
-    if isinstance(section, dict):  # whose names may have points
+    if isinstance(section, dict):  # its names may contain dots
         name = next((each for each in section if path[: each.count(".") + 1] == each.split(".")), name)
         below = path[name.count(".") + 1 :]
     inner = section.get(name) if isinstance(section, dict) else getattr(section, name)
@@ -161,7 +161,7 @@ def put(section: Any, path: list[str], value: Any) -> Any:
 
 
 def others(value: Any, setting: doc.Setting) -> list[Any]:
-    """Two values that differ from a setting's."""
+    """Values that differ from a setting's value."""
     if isinstance(value, bool):
         return [not value]
     if setting.choices:
@@ -172,14 +172,14 @@ def others(value: Any, setting: doc.Setting) -> list[Any]:
 
 
 @pytest.mark.parametrize("config", [load_config("poison"), load_config("predator"), load_config("pitfall"), rich()])
-def test_no_two_configs_have_one_digest(config: Config) -> None:
+def test_no_two_configs_share_a_digest(config: Config) -> None:
     found = {digest(config): "none"}
     for path, setting, value in doc.leaves(config):
         if not changes_worlds(path) or path.endswith(".color"):
             continue
         for other in others(value, setting):
             changed = put(config, path.split("."), other)
-            # The config's value in the place of another species' would also do, so all are compared with all.
+            # A change to one species could be taken for the same change to another, so all are compared with all.
             assert digest(changed) not in found, (path, other, found[digest(changed)])
             found[digest(changed)] = f"{path} = {other}"
     assert len(found) > 290
@@ -201,7 +201,7 @@ tables = {
 
 @settings(max_examples=60, deadline=None)
 @given(own=st.fixed_dictionaries({name: st.fixed_dictionaries(tables) for name in ("prey", "predator")}))
-def test_a_species_lacks_the_tables_that_it_lacked_when_it_was_written(own: dict[str, Any]) -> None:
+def test_a_reloaded_species_has_only_the_tables_it_was_written_with(own: dict[str, Any]) -> None:
     config = load_config("predator", overrides=['sensor.smells=["normal"]'])
     for name, sections in own.items():
         for section, values in sections.items():
@@ -212,14 +212,14 @@ def test_a_species_lacks_the_tables_that_it_lacked_when_it_was_written(own: dict
     assert digest(again) == digest(config)
 
 
-def test_diff_names_what_is_absent() -> None:
+def test_diff_lists_absent_settings() -> None:
     rows = diff(load_config("poor"), load_config("baseline"))
     assert rows[0] == ("food", ("normal", "poor"), ("normal",))
     assert ("food.normal.capacity", 90, 100) in rows
     assert ("food.poor.gives.energy", 0.2, None) in rows
 
 
-def test_what_is_no_config_and_no_path_is_refused():
+def test_an_invalid_config_or_path_is_refused():
     config = load_config("baseline")
     with pytest.raises(ArgumentError, match=r"b: must be a Config, as `load_config` gives it, not 3"):
         diff(config, cast(Any, 3))

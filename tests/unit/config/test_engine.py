@@ -1,4 +1,4 @@
-"""What the engine gets of a config: every setting, at its own path or in a layout."""
+"""What the engine receives from a config: every setting, at its own path or in a layout."""
 
 import re
 from dataclasses import replace
@@ -42,7 +42,7 @@ CONFIG = load_config(
 OWN = "species.agent."
 WALLS = walls(CONFIG.arena).tolist()
 LEAVES = {path: setting for path, setting, _ in leaves(CONFIG)}
-del LEAVES["food.poison.looks_like"]  # its sight is paid for, so it has to look like itself
+del LEAVES["food.poison.looks_like"]  # the sight of it is rewarded, so it has to look like itself
 OTHER: dict[str, Any] = {
     OWN + "body.collides": ("normal",),
     OWN + "sensor.sees": ("normal", "poison"),
@@ -58,13 +58,13 @@ OTHER: dict[str, Any] = {
     "food.normal.placement.centers": ((1.0, 1.0),),
     "food.poison.placement.centers": ((1.0, 1.0),),
 }
-"""Other values of settings that are lists or names."""
+"""Alternative values for settings that are lists or names."""
 
 
 def changed(config: Any, path: str, value: Any) -> Any:
-    """A config, or a part of one, with one setting replaced, unchecked."""
+    """A config, or part of one, with one setting replaced and nothing checked."""
     name, _, rest = path.partition(".")
-    if isinstance(config, dict):  # whose names may have points
+    if isinstance(config, dict):  # its names may contain dots
         name = max((each for each in config if f"{path}.".startswith(f"{each}.")), key=len)
         rest = path[len(name) + 1 :]
         return {**config, name: changed(config[name], rest, value) if rest else value}
@@ -88,20 +88,20 @@ def value_of(path: str) -> Any:
     return next(value for name, _, value in leaves(CONFIG) if name == path)
 
 
-def test_the_engines_structs_are_those_of_the_settings() -> None:
-    """After a change of settings: `python -m hedon.config.header > engine/config/schema.h`, and so for settable."""
+def test_the_engines_structs_match_the_settings() -> None:
+    """After changing settings: `python -m hedon.config.header > engine/config/schema.h`, and likewise for settable."""
     assert (ENGINE / "config" / "schema.h").read_text() == header()
     assert (ENGINE / "config" / "settable.h").read_text() == settable.header()
 
 
 @pytest.mark.parametrize("path", LEAVES)
 def test_every_setting_of_a_world_reaches_the_engine(path: str) -> None:
-    """As itself, in a layout, or in walls; all but names, colors and what tells where founders come from."""
+    """At its own path, in a layout or in walls; all except names, colors and the source of founders."""
     other = changed(CONFIG, path, other_value(path, LEAVES[path]))
     reaches = (engine_config(other), walls(other.arena).tolist()) != (engine_config(CONFIG), WALLS)
-    # The last two act only where a species eats another one.
+    # genome.prey acts only if a species eats another.
     quiet = r"name|preset|fidelity|world\.(founders|networks)|food\.\w+\.color|.*genome\.prey\.\w+"
-    # All rules are the same to the engine: it is told that there is one.
+    # The engine does not distinguish rules: it only learns whether there is one.
     assert reaches != bool(re.fullmatch(quiet, path)), path
 
 
@@ -117,7 +117,7 @@ def test_the_engine_has_settings_at_their_own_paths() -> None:
     assert OWN + "motor.min_force" not in engine_paths(CONFIG.with_("motor.force_scale", 2.0))
 
 
-def test_genes_stand_in_the_order_of_the_layout() -> None:
+def test_genes_follow_the_order_of_the_layout() -> None:
     config = load_config("poison", overrides=["food.poison.gene.initial_mean=3", "genome.action.initial_mean=-2"])
     genes = engine_config(config)["layout"][0]["genes"]
     assert [gene["law"]["initial_mean"] for gene in genes][:4] == [0, 3, -2, 0]

@@ -12,7 +12,7 @@ def all_settings(section: type = Config) -> list[Setting]:
 
 
 @pytest.mark.parametrize("setting", all_settings(), ids=lambda setting: setting.name)
-def test_every_setting_says_what_it_is(setting: Setting) -> None:
+def test_every_setting_is_documented(setting: Setting) -> None:
     assert setting.doc.meaning
     assert setting.doc.source.startswith(("paper", "code", "ours"))
     if setting.type in (int, float):
@@ -43,7 +43,7 @@ def test_every_field_is_a_setting_or_a_section() -> None:
         ("food.normal.color", "a text of the form `#rrggbb`"),
     ],
 )
-def test_allowed_in_words(path: str, text: str) -> None:
+def test_allowed_values_are_described(path: str, text: str) -> None:
     assert {place: setting for place, setting, _ in leaves(Config())}[path].allowed == text
 
 

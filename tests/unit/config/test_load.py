@@ -123,7 +123,7 @@ def test_file_adds_and_removes_kinds_of_food(write: Write) -> None:
     config = load_config(path)
     assert list(config.food) == ["normal", "fungus"]
     assert config.food["fungus"].gives == {"energy": 0.5}
-    assert config.food["fungus"].growth_rate == 1.0, "the overlay holds for every kind"
+    assert config.food["fungus"].growth_rate == 1.0, "the overlay applies to every kind"
 
 
 def test_every_kind_at_once(write: Write) -> None:
@@ -134,7 +134,7 @@ def test_every_kind_at_once(write: Write) -> None:
     assert [food.growth_rate for food in config.food.values()] == [2.0, 2.0]
 
 
-def test_unknown_kind_is_not_silently_a_new_one() -> None:
+def test_an_unknown_kind_does_not_silently_create_one() -> None:
     message = problems("poor", overrides=["food.norml.growth_rate=0.5"])
     assert "food.norml: there is no such kind of food (known: normal, poor)" in message
     assert "did you mean normal?" in message
@@ -142,13 +142,13 @@ def test_unknown_kind_is_not_silently_a_new_one() -> None:
     assert 'food."*" = 3: must be a table' in message
 
 
-def test_removed_kinds_can_be_too_many() -> None:
+def test_removing_every_kind_is_refused() -> None:
     assert "food: there must be from 1 to 8 kinds" in problems("small", overrides=["food.normal=false"])
     message = problems("small", overrides=["food.normal=false", "food.normal.capacity=3"])
     assert "a new kind must say what it gives" in message
 
 
-def test_a_setting_without_its_kind_names_the_place() -> None:
+def test_a_setting_without_its_kind_suggests_the_full_path() -> None:
     message = problems("poison", overrides=["food.growth_rate=1"])
     assert "food.growth_rate = 1: must be a table; did you mean food.normal.growth_rate?" in message
 
@@ -169,7 +169,7 @@ def test_file_errors(write: Write, tmp_path: Path) -> None:
     assert "it is not UTF-8 text" in problems(path)
 
 
-def test_bad_names_at_the_top_come_together(write: Write) -> None:
+def test_bad_top_level_names_are_reported_together(write: Write) -> None:
     path = write('preset = "smal"\nfidelity = 3\ncomplete = false\n')
     message = problems(path, overrides=["x", "preset=small", "fidelity=as_printed", "complete=true"])
     assert 'preset = "smal": must be one of baseline, small' in message
@@ -198,14 +198,14 @@ def test_complete_file_without_a_setting_is_refused(write: Write) -> None:
     assert "diet.digestion_steps: is missing" in message
 
 
-def test_a_setting_for_all_that_reaches_no_species_is_refused(write: Write) -> None:
+def test_a_shared_setting_that_reaches_no_species_is_refused(write: Write) -> None:
     message = problems("predator", overrides=["energy.basic_cost=1"])
     assert "energy.basic_cost = 1: changes nothing, since each species has its own" in message
     assert "set species.prey.energy.basic_cost and species.predator.energy.basic_cost" in message
     assert "changes nothing" in problems(write('preset = "predator"\n[energy]\nbasic_cost = 1.0\n'))
     dumped = write(dump_toml(load_config("predator")))
     assert "energy.capacity = 5: changes nothing" in problems(dumped, overrides=["energy.capacity=5"])
-    # What reaches a species, or is said with the species' own, is no mistake.
+    # A setting that reaches a species, or is given along with the species' own, is not a mistake.
     species = load_config("predator", overrides=["motor.max_force=30"]).species
     assert [each.motor.max_force for each in species.values()] == [30, 30]
     own = "[species.prey.energy]\nbasic_cost = 2.0\n[species.predator.energy]\nbasic_cost = 3.0\n"
@@ -213,7 +213,7 @@ def test_a_setting_for_all_that_reaches_no_species_is_refused(write: Write) -> N
     assert [each.energy.basic_cost for each in said.values()] == [2.0, 3.0]
 
 
-def test_settings_for_all_reach_the_only_species_of_a_complete_file(write: Write) -> None:
+def test_shared_settings_reach_the_only_species_of_a_complete_file(write: Write) -> None:
     for own in ("agent", "bee"):
         made = load_config("poison", overrides=[f"species.{own}.energy.initial=3"])
         assert list(made.species) == [own]
@@ -264,13 +264,13 @@ def test_name_can_be_given(write: Write) -> None:
     ("file", "name"),
     [("größe (2).toml", "groe-2"), ("my.v2.toml", "my.v2"), ("..toml", "config"), ("蝶.toml", "config")],
 )
-def test_a_file_without_a_name_gives_one_that_folders_can_have(tmp_path: Path, file: str, name: str) -> None:
+def test_a_config_without_a_name_gets_one_that_is_valid_for_a_folder(tmp_path: Path, file: str, name: str) -> None:
     path = tmp_path / file
     path.write_text('preset = "small"\n')
     assert load_config(path).name == name
 
 
-def test_a_config_is_modified_where_a_setting_differs_from_its_preset(write: Write) -> None:
+def test_a_config_is_modified_if_a_setting_differs_from_its_preset(write: Write) -> None:
     assert not is_modified(load_config("poison", "released"))
     assert not is_modified(load_config("poison", overrides=['food.poison.color="#112233"']))
     assert not is_modified(load_config(write('preset = "small"\nfidelity = "as_printed"\n')))
@@ -279,8 +279,8 @@ def test_a_config_is_modified_where_a_setting_differs_from_its_preset(write: Wri
     assert is_modified(dataclasses.replace(Config(), preset="mine"))
 
 
-def test_all_problems_of_a_file_and_its_overrides_are_told_at_once(tmp_path):
-    """What is found at different times: in names, foods, stores, settings, between settings, and in overrides."""
+def test_all_problems_of_a_file_and_its_overrides_are_reported_at_once(tmp_path):
+    """Problems found at different stages: in names, foods, stores, settings, between settings, and in overrides."""
     path = tmp_path / "many.toml"
     path.write_text(
         """

@@ -41,7 +41,7 @@ def test_parse_override(text: str, tables: dict[str, Any] | None) -> None:
 @pytest.mark.parametrize(
     "overrides", [["energy.inital=3"], ["energy.initial"], ["=3"], ["energy.initial=a b"], ["fidelity=as_printed"]]
 )
-def test_errors_name_the_change_and_no_option_of_the_command_line(overrides: list[str]) -> None:
+def test_errors_name_the_override_but_no_command_line_option(overrides: list[str]) -> None:
     with pytest.raises(ConfigError, match=re.escape(overrides[0][:8])) as caught:
         load_config("baseline", overrides=overrides)
     assert "--set" not in str(caught.value)
@@ -54,7 +54,7 @@ def test_errors_name_the_change_and_no_option_of_the_command_line(overrides: lis
         ("predator", "species.pray.population.capacity=4", "prey"),
     ],
 )
-def test_a_species_with_a_typing_error_takes_nobodys_place(preset: str, override: str, near: str) -> None:
+def test_a_misspelled_species_does_not_replace_another(preset: str, override: str, near: str) -> None:
     with pytest.raises(ConfigError, match=rf"there is no such species; .*; did you mean {near}\?"):
         load_config(preset, overrides=[override])
     assert list(load_config("baseline", overrides=["species.guest.birth.kappa=0"]).species) == ["guest"]

@@ -1,4 +1,4 @@
-"""The page of settings is what its program writes, and what it says of each setting is what a config has and takes."""
+"""The settings page is what its generator writes, and its defaults and allowed values are those of a config."""
 
 import re
 from collections.abc import Callable
@@ -35,7 +35,7 @@ smells = ["*"]
 capacity = 100.0
 [neighbor.near]
 """
-"""A config that has each table of the page, and says in it only what must be said."""
+"""A config with every table of the page, each with only the settings that it must have."""
 SAID = {
     "name",
     "reward.family",
@@ -45,7 +45,7 @@ SAID = {
     "obstacle.schedule.harmful.points",
     "hazard.schedule.scale.points",
 }
-"""Where it differs from the defaults: by what it says, and by its name."""
+"""Where it differs from the defaults: in its name and in the settings that it gives."""
 KINDS = {
     "measure.<kind>": "measure.peak",
     "food.<kind>": "food.fungus",
@@ -68,7 +68,7 @@ def test_the_committed_page_is_current() -> None:
     assert current == reference(), "run: uv run python -m hedon.config.reference > docs/config.md"
 
 
-def test_a_config_that_says_nothing_has_the_defaults_of_the_page(write: Callable[[str], Path]) -> None:
+def test_a_config_that_sets_nothing_has_the_defaults_of_the_page(write: Callable[[str], Path]) -> None:
     config = load_config(str(write(EVERY_TABLE)))
     have = {path: value for path, value in values(config).items() if not path.startswith("food.normal.")}
     told = {path: row.default for path, row in page_rows(KINDS).items()}
@@ -77,7 +77,7 @@ def test_a_config_that_says_nothing_has_the_defaults_of_the_page(write: Callable
 
 
 @pytest.mark.parametrize("way", ["from", "to"])
-def test_what_the_page_does_not_allow_is_refused_with_its_words(write: Callable[[str], Path], way: str) -> None:
+def test_values_that_the_page_does_not_allow_are_refused_in_its_words(write: Callable[[str], Path], way: str) -> None:
     file, tried = str(write(EVERY_TABLE)), 0
     for path, (default, _, _, allowed, _) in page_rows(KINDS).items():
         bounds = re.fullmatch(r"an? (number|integer) from (\S+) to (\S+)", allowed)

@@ -41,7 +41,7 @@ def test_a_setting_that_moved_is_refused_with_its_new_name(write: Write, old: st
 
 
 @pytest.mark.parametrize("path", VALUES)
-def test_a_choice_with_another_name_is_refused_with_it(path: str) -> None:
+def test_a_renamed_choice_is_refused_with_its_new_name(path: str) -> None:
     for old, new in VALUES[path].items():
         said = f'{path} = "{old}": is called "{new}" now'
         with pytest.raises(ConfigError, match=re.escape(said)):

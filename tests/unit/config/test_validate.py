@@ -12,7 +12,7 @@ from hedon.config.validate import build
 
 
 def made(tables: dict[str, Any]) -> Config:
-    """The config of a file's tables."""
+    """The config built from a file's tables."""
     assert not list(settle_species(tables, []))
     return build(Config, tables, "here")
 
@@ -83,18 +83,18 @@ def test_each_error_says_what_is_allowed(tables: dict[str, Any], line: str) -> N
     assert lines(tables) == [line]
 
 
-def test_all_errors_come_at_once() -> None:
+def test_all_errors_are_reported_at_once() -> None:
     found = lines({"energy": {"initial": -1, "nme": 0}, "genome": {"mutation_scale": "x"}, "birht": {}})
     assert len(found) == 4
 
 
-def test_integers_stand_for_numbers() -> None:
+def test_integers_are_accepted_as_floats() -> None:
     config = made({"energy": {"initial": 20}})
     assert config.species["agent"].energy.initial == 20.0
     assert isinstance(config.species["agent"].energy.initial, float)
 
 
-def test_configs_put_together_in_python_are_checked() -> None:
+def test_configs_built_in_python_are_checked() -> None:
     assert validated(Config()) == Config()
     with pytest.raises(ConfigError, match=r"energy\.initial = -3"):
         validated(dataclasses.replace(Config(), species={"agent": SpeciesConfig(energy=EnergyConfig(initial=-3))}))
@@ -126,7 +126,7 @@ def test_one_setting_is_changed_by_its_path() -> None:
         ("energy.", 1.0, "'energy.': must be the path of a setting, as in energy.initial"),
     ],
 )
-def test_a_change_that_cannot_be_is_refused(path: str, value: Any, said: str) -> None:
+def test_an_impossible_change_is_refused(path: str, value: Any, said: str) -> None:
     with pytest.raises(ConfigError) as caught:
         load_config("baseline").with_(path, value)
     assert str(caught.value) == f"baseline: {said}"

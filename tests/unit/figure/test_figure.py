@@ -62,7 +62,7 @@ def test_weights_of_a_few_agents_do_not_squeeze_the_others(tmp_path: Path) -> No
     assert told[2:] == ["all agents", "drift alone: not known of w_action", "3 agents beyond"]
 
 
-def test_a_weight_stands_before_its_own_drift(tmp_path: Path) -> None:
+def test_each_weight_is_drawn_over_its_own_drift(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=10, worlds=1))
     times, half = np.array([0.0, 10_240.0]), np.array([0.01, 0.2])
     drift = {"w_normal": DriftBand(times, 1.0 - half, 1.0 + half), "neutral_1": DriftBand(times, -half, half)}
@@ -129,7 +129,7 @@ def test_world_shows_agents_and_foods_where_they_are(tmp_path: Path) -> None:
     assert brightness[0] > brightness[1] + 0.5  # the more energy, the darker
 
 
-def test_the_legend_tells_what_rays_see() -> None:
+def test_the_legend_shows_what_rays_see() -> None:
     kinds = ("normal", "poison")
     figure = draw_world(synthetic_snapshot(kinds), food_colors(kinds), [0])
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
@@ -151,7 +151,7 @@ def crowded_snapshot() -> Snapshot:
     )
 
 
-def test_a_legend_with_many_names_lies_within_the_picture() -> None:
+def test_a_legend_with_many_names_fits_in_the_figure() -> None:
     many = crowded_snapshot()
     kinds = many.food_kinds
     figure = draw_world(many, food_colors(kinds), [0])
@@ -188,7 +188,7 @@ def test_the_title_of_a_film_leaves_room_for_its_legend(width: int, beside: bool
 
 
 def test_rays_end_on_the_walls() -> None:
-    snapshot = synthetic_snapshot()  # its rays see walls only
+    snapshot = synthetic_snapshot()  # its rays see only walls
     for index in range(len(snapshot.x)):
         segments, kind = ray_segments(snapshot, index)
         starts = segments[:, 0] - [snapshot.x[index], snapshot.y[index]]
@@ -200,8 +200,8 @@ def test_rays_end_on_the_walls() -> None:
         assert np.linalg.norm(np.diff(segments[kind < 0], axis=1), axis=-1) == pytest.approx(200.0)
 
 
-def test_the_first_ray_is_the_right_most() -> None:
-    snapshot = replace(synthetic_snapshot(agents=1), angle=np.zeros(1))  # looks along +y
+def test_the_first_ray_is_the_rightmost() -> None:
+    snapshot = replace(synthetic_snapshot(agents=1), angle=np.zeros(1))  # facing +y
     segments, _ = ray_segments(snapshot, 0)
     assert segments[0, 0, 0] > snapshot.x[0] > segments[-1, 0, 0]
 
@@ -213,7 +213,7 @@ def test_an_empty_world_is_drawn(tmp_path: Path) -> None:
     assert path.stat().st_size > 5000
 
 
-def test_outline_follows_walls_in_any_order_and_leaves_inner_walls() -> None:
+def test_outline_follows_walls_in_any_order_and_skips_inner_walls() -> None:
     square = np.array([(0, 0, 4, 0), (4, 4, 0, 4), (4, 0, 4, 4), (0, 0, 0, 4), (1, 1, 2, 2)], np.float32)
     outline = wall_outline(square)
     assert outline is not None
@@ -268,7 +268,7 @@ def test_a_pdf_has_its_fonts_embedded_as_truetype(tmp_path):
         said = subprocess.run(["pdffonts", tmp_path / "message.pdf"], capture_output=True, text=True, check=True).stdout
         rows = said.splitlines()[2:]
         assert rows
-        assert all("TrueType" in row and row.split()[-5] == "yes" for row in rows), "embedded"
+        assert all("TrueType" in row and row.split()[-5] == "yes" for row in rows), "every font is embedded"
 
 
 def test_a_figure_is_laid_out_for_the_width_of_a_column(tmp_path):

@@ -1,4 +1,4 @@
-"""Whether figures can be read: nothing printed over the data, plain numbers, panels that are filled."""
+"""Figures are readable: no text over the data, numbers in plain notation, data that fill their panels."""
 
 from itertools import pairwise
 
@@ -23,13 +23,13 @@ BASELINE = load_config("baseline")
 
 @pytest.fixture(scope="module")
 def analysis(tmp_path_factory: pytest.TempPathFactory) -> Analysis:
-    """Three worlds, so short that most who were born live on."""
+    """Three worlds, so short that most of the agents born in them are still alive."""
     folder = tmp_path_factory.mktemp("reading") / "run"
     run = open_run(write_run(folder, intervals=6, worlds=3, snapshot=False))
     return analyze([run], ["lifetime", "genealogy"])
 
 
-def test_the_legend_of_survival_lies_beside_the_curves(analysis: Analysis) -> None:
+def test_the_survival_legend_is_clear_of_the_curves(analysis: Analysis) -> None:
     figure = survival(analysis)
     assert overprinted(figure) == []
     assert [text.get_text() for text in figure.legends[0].get_texts()][1:] == ["seed 1", "seed 2", "seed 3"]
@@ -43,7 +43,7 @@ def test_the_curves_fill_the_logarithmic_panel(analysis: Analysis) -> None:
     assert lowest > least
 
 
-def test_the_legends_of_the_population_lie_above_the_bands(analysis: Analysis) -> None:
+def test_the_population_legends_are_clear_of_the_bands(analysis: Analysis) -> None:
     rows = analysis.runs[0].population()
     wide = 30 * pl.col("world")  # a band that fills its panel
     figure = draw_population(rows.with_columns(births=wide, births_failed_space=wide), ("normal",), {"normal": "green"})
@@ -51,12 +51,12 @@ def test_the_legends_of_the_population_lie_above_the_bands(analysis: Analysis) -
     assert sum(axes.get_legend() is not None for axes in figure.axes) == 2
 
 
-def test_nobody_s_death_is_told_without_axes() -> None:
+def test_survival_without_deaths_is_drawn_without_axes() -> None:
     assert not any(axes.axison for axes in draw_survival(pl.DataFrame(), pl.DataFrame()).axes)
 
 
 @pytest.mark.parametrize("energy", [0.0, 1.5, 40.0, 300.0])
-def test_no_energy_of_the_living_makes_demography_unreadable(energy: float) -> None:
+def test_demography_is_readable_whatever_the_energy_of_the_living(energy: float) -> None:
     names = ("energy_q25", "energy_median", "energy_q75")
     rows = pl.DataFrame({"step": [1024]} | {name: [f * energy] for name, f in zip(names, (0.6, 1, 1.3), strict=True)})
     figure = draw_demography(BASELINE.species["agent"], [rows])
@@ -64,7 +64,7 @@ def test_no_energy_of_the_living_makes_demography_unreadable(energy: float) -> N
     assert "half of the living" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
-def test_the_law_of_birth_says_what_its_line_means() -> None:
+def test_the_birth_figure_explains_its_line() -> None:
     figure = draw_birth(BASELINE.species["agent"])
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["R0 = 1: a lineage keeps its size"]
 
@@ -91,7 +91,7 @@ def test_numbers_of_lines_are_written_in_full(counts: tuple[int, int]) -> None:
         [f"value {i}" for i in range(14)],
     ],
 )
-def test_what_stands_below_the_curves_of_a_sweep_can_be_read(values: list) -> None:
+def test_the_tick_labels_of_a_sweeps_curves_are_readable(values: list) -> None:
     table = pl.DataFrame({"factor": values * 2, "alive": np.linspace(10, 90, 2 * len(values))})
     shown = {"alive": "agents alive", "again": "the same", "third": "again"}
     table = table.with_columns(again=pl.col("alive"), third=pl.col("alive"))
@@ -106,7 +106,7 @@ def test_what_stands_below_the_curves_of_a_sweep_can_be_read(values: list) -> No
     upright = [label for label in written if label.get_rotation() != 30]
     spans = sorted((box.x0, box.x1) for box in (label.get_window_extent() for label in upright))
     assert all(left[1] < right[0] for left, right in pairwise(spans))
-    if len(upright) < len(written):  # aslant ones have the height of a line between them
+    if len(upright) < len(written):  # slanted labels are at least a line height apart
         ends = sorted(label.get_window_extent().x1 for label in written)
         assert min(np.diff(ends)) > 1.2 * float(written[0].get_fontsize()) * figure.dpi / 72
 
@@ -116,7 +116,7 @@ def survival(analysis: Analysis) -> Figure:
 
 
 def numbers(figure: Figure) -> list[str]:
-    """What is written at the ticks of the first y axis, within its limits."""
+    """The tick labels of the first y axis, within its limits."""
     figure.draw_without_rendering()
     axes = figure.axes[0]
     low, high = axes.get_ylim()
@@ -125,7 +125,7 @@ def numbers(figure: Figure) -> list[str]:
 
 
 def overprinted(figure: Figure) -> list[str]:
-    """The texts that lie within axes, legends' too, and that a line or a band crosses."""
+    """The texts and legends within axes that a line or a band crosses."""
     figure.draw_without_rendering()
     found = []
     for axes in figure.axes:
