@@ -1,4 +1,4 @@
-"""The benchmark's own arithmetic: floors, scaled worlds, and what its checks let pass."""
+"""The benchmark's own arithmetic: floors, scaled worlds, and what its checks reject."""
 
 import itertools
 
@@ -21,33 +21,33 @@ from hedon.experiment.simulation import Simulation
 NO_RATES = Calibration({}, {}, 0.0)
 
 
-def test_the_operations_of_a_sample_are_those_counted_by_hand():
+def test_the_operations_of_a_sample_match_a_count_by_hand():
     # Rows of the first layer: 24 rays and 5 dense entries. (29·64 + 64·64 + 3·64) = 6,144 weights, 2 operations each;
-    # backward the same again, and 64·64 + 3·64 = 4,288 weights for the gradients of the units.
+    # the backward pass takes the same again, and 64·64 + 3·64 = 4,288 weights for the gradients of the units.
     assert network_flop(load_config("baseline")) == (12_288, 12_288 + 8_576)
     unit = load_config("baseline", overrides=("sensor.scaling=unit", "sensor.ray_count=8"))
     assert network_flop(unit)[0] == 2 * ((8 + 6) * 64 + 4_288)
 
 
-def test_the_floor_is_that_of_the_work_by_the_rates():
+def test_the_floor_is_the_work_divided_by_the_rates():
     floor = step_floor(
         load_config("baseline"), alive=150, learners=127, multiply_add_gflops=200, cache_read_gbytes_per_s=50
     )
-    # 127 learners · 40 updates · 256 samples · 33,152 operations by 200e9/s, over 1,024 steps.
+    # 127 learners · 40 updates · 256 samples · 33,152 operations at 200e9/s, over 1,024 steps.
     assert floor.learning_seconds == pytest.approx(127 * 40 * 256 * 33_152 / 200e9 / 1024)
-    # 150 agents read 29 · 64 + 64 · 64 weights of 2 bytes; 192 of the heads, 64 folded and 64 square biases, and 3 of
-    # the heads, 4 bytes each.
+    # 150 agents read 29 · 64 + 64 · 64 weights of 2 bytes, and numbers of 4 bytes: 192 weights of the heads, 64 folded
+    # biases, 64 biases of the square layer and 3 biases of the heads.
     assert floor.forward_seconds == pytest.approx(150 * (2 * 5_952 + 4 * 323) / 50e9)
     assert floor.seconds == pytest.approx(0.2105e-3 + 0.0396e-3, rel=1e-3)
 
 
-def test_the_floor_of_acting_by_float32_counts_every_weight_in_full():
+def test_the_floor_of_acting_in_float32_counts_every_weight_in_full():
     exact = load_config("baseline", overrides=('learning.acting_weights="float32"',))
     floor = step_floor(exact, alive=150, learners=127, multiply_add_gflops=200, cache_read_gbytes_per_s=50)
     assert floor.forward_seconds == pytest.approx(150 * 4 * 6_275 / 50e9)
 
 
-def test_acting_is_bound_by_operations_where_reads_are_fast():
+def test_acting_is_bound_by_operations_when_reads_are_fast():
     floor = step_floor(load_config("baseline"), 150, 0, multiply_add_gflops=10, cache_read_gbytes_per_s=500)
     assert floor.forward_seconds == pytest.approx(150 * 12_288 / 10e9)
     assert floor.learning_seconds == 0
@@ -82,7 +82,7 @@ def test_all_sizes_of_growth_are_valid_configs(across, up):
 
 
 @pytest.mark.parametrize("preset", ["centered", "relocation"])
-def test_a_world_without_one_density_is_refused(preset):
+def test_a_world_of_uneven_density_is_refused(preset):
     with pytest.raises(PlanError, match=f"{preset} has inner walls or food around centers"):
         growth.scaled_config(make_plan(preset), 2, 5, 10)
 
@@ -102,7 +102,7 @@ def test_tiles_repeat_a_scene_side_by_side():
     assert scene.species[scene.x % 100 == 2].tolist() == [1] * 8
 
 
-def test_a_size_that_finds_no_memory_says_so(monkeypatch):
+def test_a_size_that_does_not_fit_in_memory_is_skipped_with_a_note(monkeypatch):
     monkeypatch.setattr(growth, "memory_bytes", lambda field: 49_000_000)
     rows = growth.measure(make_plan(threads="1", quick=True), NO_RATES)
     assert [row["slots"] for row in rows if "refused" in row] == [400]
@@ -132,7 +132,7 @@ def test_the_scene_of_a_world_can_be_put_into_another():
     assert len(copy.worlds[0].foods()["x"]) == len(peopled(plan).foods()["x"])
 
 
-def test_a_simulation_goes_on_from_the_peopled_world():
+def test_a_simulation_continues_from_the_peopled_world():
     plan = make_plan(threads="1", quick=True)
     copies = Simulation(plan.config(), [1, 2], 1, plan.kernel)
     go_on_from_peopled(plan, copies)
@@ -197,7 +197,7 @@ def test_arguments_that_cannot_be_used(arguments, message):
         make_plan(**arguments)
 
 
-def test_a_size_that_growth_does_not_have():
+def test_a_size_that_growth_does_not_have_is_refused():
     with pytest.raises(PlanError, match=r"--slots: 300 is not one of the sizes .*: 200, 2000, 20000, 100000"):
         growth.measure(make_plan(slots="300"), NO_RATES)
 

@@ -1,4 +1,4 @@
-"""Runs as a dataset: what a hub reads of its card, every column documented, every file under a checksum."""
+"""Runs exported as a dataset: a hub can read the card, every column is documented, every file has a checksum."""
 
 import hashlib
 import json
@@ -21,7 +21,7 @@ from hedon.record.reader import open_run
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """One of one species, and one of two, whose tables have other columns."""
+    """One run with one species and one with two, whose tables have different columns."""
     folder = tmp_path_factory.mktemp("runs")
     pair = load_config("predator", overrides=["world.rollout_steps=64", "learning.minibatch_size=32"])
     make_run(RunPlan(pair, (4,), 128, folder / "pair", 1, frames=64))
@@ -60,7 +60,7 @@ def test_every_column_is_in_the_card_and_every_row_in_the_tables(dataset: Path, 
             assert mine.equals(own)
 
 
-def test_checksums_and_manifests_are_those_of_the_files(dataset: Path, runs: list[Path]) -> None:
+def test_checksums_and_manifests_match_the_files(dataset: Path, runs: list[Path]) -> None:
     lines = (dataset / "SHA256SUMS").read_text().splitlines()
     sums = {name: digest for digest, name in (line.split("  ", 1) for line in lines)}
     there = {path.relative_to(dataset).as_posix() for path in dataset.rglob("*") if path.is_file()}
@@ -72,7 +72,7 @@ def test_checksums_and_manifests_are_those_of_the_files(dataset: Path, runs: lis
     assert (dataset / "runs/pair/config.toml").read_text() == (runs[1] / "config.toml").read_text()
 
 
-def test_what_cannot_be_a_dataset_is_refused(runs: list[Path], tmp_path: Path) -> None:
+def test_an_impossible_dataset_is_refused(runs: list[Path], tmp_path: Path) -> None:
     opened = [open_run(path) for path in runs]
     with pytest.raises(ExportError, match="two runs are called pair"):
         write_dataset([opened[1], opened[1]], tmp_path / "set")

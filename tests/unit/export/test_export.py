@@ -29,14 +29,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def invoke(*arguments: str) -> str:
-    """Runs the command; an error of hedon is given as its text."""
+    """Runs the command and returns its output, or the text of an error raised by hedon."""
     result = CliRunner().invoke(app, list(arguments))
     return str(result.exception) if isinstance(result.exception, HedonError) else result.output
 
 
 @pytest.mark.parametrize("table", ["agents", "population"])
 @pytest.mark.parametrize("file_format", READERS)
-def test_a_table_reads_back_as_it_is(table: str, file_format: str, folder: Path, tmp_path: Path) -> None:
+def test_a_table_reads_back_unchanged(table: str, file_format: str, folder: Path, tmp_path: Path) -> None:
     out = tmp_path / f"out.{file_format}"
     assert invoke(table, str(folder), "--format", file_format, "--out", str(out)) == f"wrote {out}\n"
     wanted = getattr(open_run(folder), table)()
@@ -45,7 +45,7 @@ def test_a_table_reads_back_as_it_is(table: str, file_format: str, folder: Path,
     assert_frame_equal(found.cast(dict(wanted.schema)), wanted)  # pyright: ignore[reportArgumentType]
 
 
-def test_what_takes_long_is_told(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_export_reports_its_progress(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("hedon.cli.display.step.QUIET_SECONDS", 0.0)
     result = CliRunner().invoke(app, ["agents", str(folder), "--out", str(tmp_path / "out.csv")])
     assert "hedon: exporting: reading agents, step 1 of 2" in result.stderr
@@ -73,7 +73,7 @@ def test_the_default_file_is_named_after_the_run(folder: Path, tmp_path: Path, m
         (["agents", "--out", "/nowhere/out.csv"], "cannot write /nowhere/out.csv: No such file or directory"),
     ],
 )
-def test_what_cannot_be_is_said(arguments: list[str], message: str, folder: Path) -> None:
+def test_impossible_exports_are_explained(arguments: list[str], message: str, folder: Path) -> None:
     assert message in invoke(arguments[0], str(folder), *arguments[1:])
 
 
@@ -84,7 +84,7 @@ def family() -> pl.DataFrame:
 
 
 def test_the_tree_of_a_family() -> None:
-    # 0 forks when 1 is born; its own life leads on to 2 alone, who forks when 4 is born.
+    # 0 forks when 1 is born; its own life then leads only to 2, which forks when 4 is born.
     assert newick(family(), now=100) == b"(1:90,(4:60,2:60):30):10;\n5:100;\n"
 
 
@@ -140,7 +140,7 @@ def test_without_survivors_there_is_no_tree() -> None:
     assert alife_table(gone, ()).height == 6
 
 
-def test_two_parents_are_told() -> None:
+def test_two_parents_are_recognized() -> None:
     pairs = family().with_columns(mate_id=pl.when(pl.col("agent_id") == 4).then(1))
     assert has_two_parents(pairs)
     assert not has_two_parents(family().with_columns(mate_id=pl.lit(None)))
@@ -149,7 +149,7 @@ def test_two_parents_are_told() -> None:
 
 @pytest.fixture(scope="module")
 def branched(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A branch of a lively world, in which founders have died and children were born before it began."""
+    """A branch of a lively world in which founders died and children were born before the branch started."""
     place = tmp_path_factory.mktemp("branched")
     lively = ("birth.kappa=0.05", "hazard.alpha_age=0.01", "learning.update_epochs=1", "world.rollout_steps=256")
     plan = RunPlan(load_config("small", overrides=lively), seeds=(1,), steps=1024, out=place / "whole")
@@ -159,14 +159,16 @@ def branched(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("chosen", ["alife", "newick", "png"])
-def test_the_pedigree_of_a_branch_begins_with_those_who_lived_then(chosen: str, branched: Path, tmp_path: Path) -> None:
+def test_the_pedigree_of_a_branch_starts_with_the_agents_then_alive(
+    chosen: str, branched: Path, tmp_path: Path
+) -> None:
     out = tmp_path / f"tree.{chosen}"
     assert invoke("phylogeny", str(branched), "--format", chosen, "--out", str(out)) == f"wrote {out}\n"
     agents = pedigree(open_run(branched), 1)
     roots = agents.filter(pl.col("parent_id").is_null())
     begin = open_run(branched).manifest.parent.step  # pyright: ignore
     assert roots["birth_step"].max() <= begin  # pyright: ignore
-    assert roots.filter(pl.col("birth_step") > 0).height > 0, "some were born before it began"
+    assert roots.filter(pl.col("birth_step") > 0).height > 0, "some were born before the branch started"
     if chosen == "alife":
         ids = set(map(str, agents["agent_id"]))
         named = pl.read_csv(out, infer_schema_length=None)["ancestor_list"].str.strip_chars("[]").to_list()

@@ -1,4 +1,4 @@
-"""The lines of the guide with which other tools read records give what hedon itself gives."""
+"""The guide's lines for reading records with other tools give the same results as hedon itself."""
 
 import re
 import shutil
@@ -21,7 +21,7 @@ GUIDE = (ROOT / "docs" / "guide" / "export.md").read_text(encoding="utf-8")
 
 @pytest.fixture(scope="module")
 def most(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[int, int]]:
-    """A folder in which `runs/mine` is a run of two species, and the most agents that lived at a time, by seed."""
+    """A folder in which `runs/mine` is a run of two species, and the most agents alive at any step, by seed."""
     place = tmp_path_factory.mktemp("tools")
     few = ("species.many.population.initial_count=16", "species.few.population.initial_count=8")
     small_run(place / "runs" / "mine", 8 * WINDOW, overrides=few)

@@ -37,10 +37,10 @@ def test_the_indices_of_a_family() -> None:
     found = index_table(family(), 100, 10)
     assert found["step"].to_list() == [10, 20, 30, 40, 50, 60, 70, 80, 90, 100]
     assert found["living"].to_list() == [3, 4, 5, 5, 4, 4, 4, 4, 4, 4]
-    # At the end 1 and 2 hang from 0, 4 from 2, and 5 is joined: four edges; the depths are 1, 1, 2 and 0.
+    # At the end, 1 and 2 descend from 0, 4 from 2, and 5 is joined on: four edges; the depths are 1, 1, 2 and 0.
     assert found["phylogenetic_diversity"][-1] == 4
     assert found["mean_depth"][-1] == 1.0
-    # Pairs with a common ancestor: 1–2 and 2–4 and 1–4, of 2, 1 and 3 edges.
+    # Pairs with a common ancestor: 1–2, 2–4 and 1–4, which are 2, 1 and 3 edges apart.
     assert found["mean_pairwise_distance"][-1] == 2.0
 
 
@@ -86,7 +86,7 @@ def test_the_picture_of_a_family() -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_no_birth_is_drawn_across_a_life(seed: int) -> None:
-    """Random families: a line from parent to child meets no life between them."""
+    """In random families, the line from parent to child crosses no life between them."""
     rng = np.random.default_rng(seed)
     parents: list[int | None] = [None] * 4
     births = [0] * 4
@@ -110,7 +110,7 @@ def test_no_birth_is_drawn_across_a_life(seed: int) -> None:
             assert not (begin < at < end and min(one, other) < height < max(one, other))
 
 
-def test_of_many_some_are_drawn_and_of_nobody_nothing() -> None:
+def test_only_some_of_many_agents_are_drawn_and_none_if_all_are_dead() -> None:
     many = pl.DataFrame(
         {"agent_id": range(1000), "parent_id": [None] * 1000, "birth_step": [0] * 1000, "death_step": [None] * 1000},
         schema_overrides={"parent_id": pl.Int64, "death_step": pl.Int64},
@@ -121,7 +121,7 @@ def test_of_many_some_are_drawn_and_of_nobody_nothing() -> None:
     assert "nobody lives" in draw_tree(genealogy(gone), np.zeros(1000), "w_normal", 10).axes[0].texts[0].get_text()
 
 
-def test_a_picture_is_colored_by_any_gene_that_there_is(run: Run) -> None:
+def test_a_picture_can_be_colored_by_any_gene(run: Run) -> None:
     agents = pedigree(run)
     content = picture(agents, last_step(run, agents), run.weight_names, "neutral_1")
     width, height = struct.unpack(">II", content[16:24])

@@ -54,7 +54,7 @@ def test_the_simplified_sequence_is_the_tree_of_the_newick_export(name: str, req
     agents = pedigree(run)
     now = last_step(run, agents)
     births_at_the_end = agents.filter(pl.col("birth_step") == now)
-    if births_at_the_end.height:  # whose branches have another length
+    if births_at_the_end.height:  # their branches have a different length
         now += 1
     sequence = tree_sequence(agents, run.weight_names, now)
     simple = sequence.simplify()
@@ -84,14 +84,14 @@ def test_a_file_has_all_lives(made: Run, tmp_path: Path) -> None:
     assert times.max() == last_step(made, agents)
 
 
-def test_a_birth_in_the_last_step_lies_half_a_step_before_it() -> None:
+def test_a_birth_in_the_last_step_is_dated_half_a_step_earlier() -> None:
     rows = [(0, None, 0, None), (1, 0, 10, None)]
     agents = pl.DataFrame(rows, ["agent_id", "parent_id", "birth_step", "death_step"], orient="row")
     tree = tree_sequence(agents, (), 10).first()
     assert tree.time(tree.mrca(1, 2)) == LAST_BIRTH
 
 
-def test_pedigrees_of_two_parents_are_no_tree() -> None:
+def test_pedigrees_with_two_parents_are_refused() -> None:
     rows = [(0, None, None, 0, None), (1, None, None, 0, None), (2, 0, 1, 10, None)]
     agents = pl.DataFrame(rows, ["agent_id", "parent_id", "mate_id", "birth_step", "death_step"], orient="row")
     with pytest.raises(ExportError, match="two parents: there is no tree"):

@@ -28,14 +28,14 @@ def analysis(tmp_path_factory: pytest.TempPathFactory) -> Analysis:
     return analyze([open_run(write_run(folder, snapshot=False, **options))])
 
 
-def test_every_topic_answers(analysis: Analysis) -> None:
-    for topic in TOPICS.keys() - {"verdict"}:  # two kinds under the settings of one: not a setting of the paper
+def test_every_topic_has_a_table(analysis: Analysis) -> None:
+    for topic in TOPICS.keys() - {"verdict"}:  # two foods with the settings for one: not a condition of the paper
         assert topic in analysis.tables
     lone = {"lifetime_world", "survival", "selection_world", "price_world", "drift_world", "lineage", "regime_time"}
     assert lone <= set(analysis.tables)
 
 
-def test_numbers_are_those_of_the_statistics(analysis: Analysis) -> None:
+def test_numbers_agree_with_the_statistics(analysis: Analysis) -> None:
     rows = analysis.tables["lifetime_world"].rows
     agents = analysis.runs[0].agents()
     for i in range(4):
@@ -52,7 +52,7 @@ def test_numbers_are_those_of_the_statistics(analysis: Analysis) -> None:
     assert set(drift["weight"]) == {"w_normal", "w_poison", "w_action", "neutral_1"}
 
 
-def test_one_of_two_species_may_have_no_neutral_markers(tmp_path: Path) -> None:
+def test_one_of_two_species_may_have_no_neutral_genes(tmp_path: Path) -> None:
     two = ("species.plain.genome.neutral_count=0", "species.marked.genome.neutral_count=2")
     small_run(tmp_path / "run", 96, seeds=(1,), overrides=two)
     lines = analyze([open_run(tmp_path / "run")], ["genealogy"]).tables["lineage"].rows
@@ -66,7 +66,7 @@ def test_a_table_of_one_of_two_species_names_it(tmp_path: Path) -> None:
     found = analyze([open_run(tmp_path / "run")], ["genealogy"]).tables["genealogy"]
     headers, rows = cells(found)
     assert headers[0] == "condition"
-    assert {row[0].rpartition(": ")[2] for row in rows} == {"single"}, "trees are of species with one parent"
+    assert {row[0].rpartition(": ")[2] for row in rows} == {"single"}, "only species with single parents have trees"
 
 
 def test_the_same_records_give_the_same_answers(analysis: Analysis) -> None:
@@ -87,7 +87,7 @@ def test_files_hold_every_number(analysis: Analysis, tmp_path: Path) -> None:
             assert len(list(csv.DictReader(file))) == result.rows.height == len(content["tables"][name]["rows"])
 
 
-def test_tables_of_an_earlier_analysis_are_removed_and_no_other_file(analysis: Analysis, tmp_path: Path) -> None:
+def test_only_the_tables_of_an_earlier_analysis_are_removed(analysis: Analysis, tmp_path: Path) -> None:
     write_analysis(analysis, tmp_path)
     (tmp_path / "mine.csv").write_text("a\n")
     (tmp_path.parent / "beside.csv").write_text("b\n")
@@ -150,7 +150,7 @@ def test_notes_are_plain_and_explain_the_words_of_the_energy_budget(analysis: An
 
 def test_a_run_without_rows_has_an_analysis(tmp_path: Path) -> None:
     empty = analyze([open_run(write_run(tmp_path / "run", intervals=0, worlds=1, neutral_count=0, snapshot=False))])
-    assert "regime" not in empty.tables  # nothing was recorded to tell it from
+    assert "regime" not in empty.tables  # nothing was recorded from which to infer it
     write_analysis(empty, tmp_path / "out")
     kept = json.loads((tmp_path / "out" / "analysis.json").read_text(encoding="utf-8"))
     assert set(kept["tables"]) == set(empty.tables) > {"lifetime"}
@@ -164,7 +164,7 @@ def test_choosing_topics() -> None:
         choose_topics("selecton")
 
 
-def test_what_is_no_topic_or_no_run_is_named(tmp_path: Path) -> None:
+def test_an_invalid_topic_or_run_is_named(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=1, worlds=1))
     with pytest.raises(TopicError, match="no topic 'regmie'; did you mean regime"):
         analyze([run], topics=["regmie"])

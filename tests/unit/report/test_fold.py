@@ -1,4 +1,4 @@
-"""Neutral genes are one row of what a reader sees, and conditions are named by what differs."""
+"""Readers see neutral genes as one row, and conditions are named after the settings in which they differ."""
 
 from pathlib import Path
 
@@ -23,13 +23,13 @@ def test_neutral_genes_are_one_row_of_each_group():
     assert [row[headers.index("weight")] for row in shown] == ["w_food", "2 neutral: 1 with p < 0.05"] * 2
     assert [row[headers.index("mean")] for row in shown] == ["1.00", "3.00"] * 2
     assert [row[headers.index("95 % interval")] for row in shown][1] == ""
-    assert table.rows.height == 6, "the files have all"
+    assert table.rows.height == 6, "the files have every row"
     one = make_table("one", "One", [row for row in rows if row["weight"] != "neutral_2"])
     assert [row[headers.index("weight")] for row in cells(one)[1]] == ["w_food", "neutral_1"] * 2
     assert cells(make_table("none", "None", [{"weight": 3.0}, {"weight": 4.0}]))[1] == [["3.00"], ["4.00"]]
 
 
-def test_people_see_no_p_below_a_ten_thousandth_and_files_have_it():
+def test_small_p_values_are_abbreviated_for_readers_but_exact_in_files():
     rows = [
         {"gene": "w_food", "effect": 4.2e-7, "p": 4.2e-14, "p Holm": 0.00011, "p_held": 0.0},
         {"gene": "w_action", "effect": 1.0, "p": 0.028, "p Holm": 1.0, "p_held": None},
@@ -46,7 +46,7 @@ def test_people_see_no_p_below_a_ten_thousandth_and_files_have_it():
     assert (p_phrase(4.2e-14), p_phrase(0.0284), p_phrase(1.0)) == ("p < 0.0001", "p = 0.028", "p = 1")
 
 
-def test_conditions_of_one_name_are_told_apart_by_what_differs(tmp_path: Path):
+def test_conditions_with_the_same_name_are_distinguished_by_what_differs(tmp_path: Path):
     for name, cost in (("a", "0.001"), ("b", "0.002")):
         small_run(tmp_path / name, 64, seeds=(1,), overrides=(f"energy.basic_cost={cost}",))
     small_run(tmp_path / "c", 64, seeds=(2,), overrides=("energy.basic_cost=0.001",))

@@ -1,4 +1,4 @@
-"""A report on a run that has not finished says first of which steps its numbers are."""
+"""A report on an unfinished run begins with the steps that its numbers cover."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,7 +15,7 @@ from hedon.report.analysis import analyze
 from hedon.report.run import narrow_intervals
 
 
-def test_a_killed_run_says_that_its_tables_are_of_two_moments(tmp_path: Path) -> None:
+def test_a_report_on_a_killed_run_says_that_its_tables_end_at_two_steps(tmp_path: Path) -> None:
     killed = write_run(tmp_path / "killed", intervals=8, worlds=2, snapshot=False, status="running", unsaved=3)
     done = CliRunner().invoke(app, ["report", str(killed), "--figures", "none"])
     assert done.exit_code == 0, done.output
@@ -34,7 +34,7 @@ def test_a_killed_run_says_that_its_tables_are_of_two_moments(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("status", ["running", "interrupted", "failed"])
-def test_a_run_whose_tables_end_together_names_one_step(tmp_path: Path, status: str) -> None:
+def test_a_report_on_a_run_whose_tables_end_together_names_one_step(tmp_path: Path, status: str) -> None:
     run = open_run(write_run(tmp_path / "a", intervals=3, worlds=2, snapshot=False, extinct=1, status=status))
     assert analyze([run], ["food"]).unfinished == [
         f"The run a has not finished (status {status}): this is of what its records hold up to step {3 * INTERVAL:,}."
@@ -45,8 +45,8 @@ def test_a_finished_run_needs_no_such_sentence(tmp_path: Path) -> None:
     assert not analyze([open_run(write_run(tmp_path / "a", intervals=3, snapshot=False))], ["food"]).unfinished
 
 
-def test_intervals_that_are_too_narrow_are_told() -> None:
-    """Where some of the worlds died out, and there are enough for an interval."""
+def test_intervals_that_are_too_narrow_are_reported() -> None:
+    """If some worlds died out, and there are enough worlds for an interval."""
 
     def told(ends: list[int | None]) -> list[str]:
         worlds = [cast(WorldRecord, SimpleNamespace(extinct_step=end)) for end in ends]

@@ -24,7 +24,7 @@ from hedon.report.figure import FIGURES
 from hedon.report.page import FigureFile, html_page, markdown_page
 from hedon.report.run import report_page, write_report
 
-# Both give the same name to their pictures, and hold what means something in Markdown or in HTML.
+# Both lead to the same names for their figures, and contain characters with a meaning in Markdown or HTML.
 FOLDERS = ["a|b *c* <i>d `e` [f](g) &lt; #", "_a_ ~~b~~ \\| $c$\n# <i>d e f g lt"]
 NAME = "baseline (corrected)"
 CONDITION = "<b>mush & room</b> | *x*"
@@ -73,12 +73,12 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "out"
 
 
-def test_the_page_stands_alone(report: Path) -> None:
+def test_the_page_is_self_contained(report: Path) -> None:
     text = (report / "report.html").read_text(encoding="utf-8")
     outline = Outline()
     outline.feed(text)
     assert outline.open == []
-    assert len(outline.images) == 2 * 9  # every figure of both conditions, a world each
+    assert len(outline.images) == 2 * 9  # every figure for both conditions, each with one of a world
     assert all(image["src"].startswith("data:image/svg+xml;base64,") for image in outline.images)
     assert all(image["alt"] for image in outline.images)
     assert all(link.startswith("#") and link[1:] in outline.ids for link in outline.links)
@@ -96,7 +96,7 @@ def test_every_figure_says_how_to_read_it(report: Path) -> None:
         assert html.replace("&#39;", "'").count(f"<figcaption>{kind.caption}</figcaption>") == 2
 
 
-def test_the_page_tells_what_there_is(report: Path) -> None:
+def test_the_page_shows_results_settings_and_manifest(report: Path) -> None:
     text = (report / "report.html").read_text(encoding="utf-8")
     assert "Died out: seed 3 at step" in text
     assert '<span class="badge undecided">undecided</span>' in text
@@ -109,7 +109,7 @@ def test_the_page_tells_what_there_is(report: Path) -> None:
     assert "starving, limited by room" in text
 
 
-def test_markdown_has_the_same_tables_and_finds_its_figures(report: Path) -> None:
+def test_markdown_has_the_same_tables_and_links_to_its_figures(report: Path) -> None:
     text = (report / "report.md").read_text(encoding="utf-8")
     figures = re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text)
     assert len(figures) == 18
@@ -123,7 +123,7 @@ def test_markdown_has_the_same_tables_and_finds_its_figures(report: Path) -> Non
     assert json.loads(manifest)["seeds"] == [1, 2, 3, 4]
 
 
-def test_names_mean_nothing_in_markdown_or_html(report: Path) -> None:
+def test_names_are_escaped_in_markdown_and_html(report: Path) -> None:
     markdown = (report / "report.md").read_text(encoding="utf-8")
     rendered = MarkdownIt("commonmark").enable(["table", "strikethrough"]).render(markdown)
     page = (report / "report.html").read_text(encoding="utf-8")
@@ -150,7 +150,7 @@ def test_changed_settings_and_damaged_files_are_shown(tmp_path: Path) -> None:
     (folder / "config.toml").write_text('preset = "baseline"\n[energy]\ninitial = 33.0\n')
     (folder / "agents/part-000000.parquet").write_bytes(b"torn")
     (folder / "final.npz").write_bytes(b"torn")
-    with pytest.raises(RecordError, match="damaged snapshot"):  # after all else is written
+    with pytest.raises(RecordError, match="damaged snapshot"):  # after everything else is written
         write_report(open_run(folder))
     text = (folder / "report.html").read_text()
     assert "<tr><td>energy.initial</td><td>40.0</td><td>33.0</td></tr>" in text
@@ -184,7 +184,7 @@ def test_figures_draw_their_tables(analysis: Analysis) -> None:
     assert np.asarray(lineage[0].lines[0].get_ydata())[-1] == tables["lineage"].filter(pl.col("seed") == 1)["lines"][-1]
 
 
-def test_regimes_are_drawn_where_they_were() -> None:
+def test_regimes_are_drawn_at_their_steps() -> None:
     names = ["between", "starving, limited by room", "starving, limited by room", "extinct"]
     rows = pl.DataFrame({"seed": [7] * 4, "step": [10, 20, 30, 40], "steps": [10] * 4, "regime": names})
     bars = draw_regimes(rows).axes[0].collections[0]

@@ -1,4 +1,4 @@
-"""What a study's author writes in Markdown is shown as such, and HTML in it stays text."""
+"""Markdown written by a study's author is rendered, and HTML in it stays text."""
 
 import polars as pl
 

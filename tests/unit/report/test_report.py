@@ -55,7 +55,7 @@ def test_without_figures_a_report_has_all_numbers(tmp_path: Path) -> None:
     assert "<figure>" not in files[1].read_text()
 
 
-def test_a_report_is_written_again(tmp_path: Path) -> None:
+def test_a_report_can_be_rewritten(tmp_path: Path) -> None:
     folder = write_run(tmp_path / "run", intervals=0, worlds=1, snapshot=False)
     assert [file.name for file in write_report(open_run(folder))] == [name for name in NAMES if name != "world.svg"]
     before = (folder / "summary.json").read_text()
@@ -89,7 +89,7 @@ def test_a_report_reads_each_file_once(tmp_path: Path, monkeypatch: pytest.Monke
     assert records == {**parts, "agents/living.parquet": 1, "config.toml": 1}
 
 
-def test_figures_come_in_another_format_too(tmp_path: Path) -> None:
+def test_figures_can_be_written_in_another_format_too(tmp_path: Path) -> None:
     files = write_report(open_run(write_run(tmp_path / "run", intervals=5, worlds=1)), figures="pdf")
     drawn = [path for path in files if path.parent.name == "figures"]
     stems = [{path.stem for path in drawn if path.suffix == suffix} for suffix in (".svg", ".pdf")]

@@ -71,7 +71,7 @@ def test_worlds_that_died_out_count_as_empty(tmp_path: Path) -> None:
     assert summary["worlds"][1]["alive_mean"] == pytest.approx(int(ended["agent_steps"].sum()) / (0.1 * 40 * 1024))
     assert summary["worlds"][1]["mean_energy"] is None
     alive = [world["alive_mean"] for world in summary["worlds"]]
-    assert summary["alive_mean"]["mean"] == pytest.approx(sum(alive) / 3), "all three, the extinct one too"
+    assert summary["alive_mean"]["mean"] == pytest.approx(sum(alive) / 3), "all three worlds, including the extinct one"
 
 
 def test_a_run_without_rows_has_a_summary(tmp_path: Path) -> None:
@@ -92,7 +92,7 @@ def test_a_damaged_part_is_named_in_the_summary(tmp_path: Path) -> None:
     assert "agents/part-000000.parquet" in _print(summary)
 
 
-def test_table_shows_ours_beside_the_papers(tmp_path: Path) -> None:
+def test_the_table_shows_our_numbers_next_to_the_papers(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=40, worlds=3, extinct=1))
     text = _print(run_summary(run))
     assert "lifetime of the dead [step]" in text
@@ -107,11 +107,11 @@ def test_table_shows_ours_beside_the_papers(tmp_path: Path) -> None:
     [
         ({"name": "mushrooms", "modified": True}, "mushrooms (baseline, corrected, modified): 1 world"),
         ({"modified": True}, "baseline (corrected, modified): 1 world"),
-        ({"name": None, "modified": None}, "baseline (corrected): 1 world"),  # a manifest of old
+        ({"name": None, "modified": None}, "baseline (corrected): 1 world"),  # an old manifest
     ],
     ids=["own file", "override", "unknown"],
 )
-def test_the_papers_figures_stand_beside_its_own_conditions_only(tmp_path: Path, options: dict, title: str) -> None:
+def test_the_papers_numbers_are_shown_only_for_its_own_conditions(tmp_path: Path, options: dict, title: str) -> None:
     summary = run_summary(open_run(write_run(tmp_path / "run", intervals=5, worlds=1, **options)))
     assert summary["reported"] == {}
     text = _print(summary)
@@ -151,10 +151,10 @@ def test_the_page_of_the_records_is_current() -> None:
 
 def test_the_page_of_the_figures_has_their_captions() -> None:
     page = (ROOT / "docs/figures.md").read_text(encoding="utf-8")
-    assert figure_table() in page, "put there what hedon.report.document.figure_table() gives"
+    assert figure_table() in page, "paste there the output of hedon.report.document.figure_table()"
 
 
-def test_a_narrow_terminal_has_every_number_whole(tmp_path: Path) -> None:
+def test_a_narrow_terminal_shows_every_number_in_full(tmp_path: Path) -> None:
     summary = run_summary(open_run(write_run(tmp_path / "run", intervals=40, worlds=5)))
     text = _print(summary, width=60)
     assert max(map(len, text.splitlines())) <= 60

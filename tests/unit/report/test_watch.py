@@ -1,4 +1,4 @@
-"""The report says how to watch a run, and from which step on most happened."""
+"""The report says how to watch a run, and at which step its largest change starts."""
 
 from types import SimpleNamespace
 
@@ -10,7 +10,7 @@ STEPS = [100 * (i + 1) for i in range(40)]
 
 
 def recorded(rows, seeds=(3, 4)):
-    """A run with a table of populations."""
+    """A run with a population table."""
     return SimpleNamespace(
         population=lambda skip_damaged: rows, reward_names=("w_food", "w_action"), manifest=SimpleNamespace(seeds=seeds)
     )

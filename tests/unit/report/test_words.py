@@ -1,4 +1,4 @@
-"""The first sentences of a report: what they say follows from the numbers of the topic drift."""
+"""The first sentences of a report follow from the numbers of the topic drift."""
 
 import math
 import re
@@ -22,7 +22,7 @@ def analysis(tmp_path_factory: pytest.TempPathFactory) -> Analysis:
 
 
 def told(analysis: Analysis, score: float, means: tuple[float, ...] = (0.5,)) -> str:
-    """What is said of the weight of food with this mean score, beside five other tests."""
+    """The sentence about the weight of food with this mean score, among five other tests."""
     condition = next(iter(analysis.conditions))
     row = {"condition": condition, "weight": "w_normal"}
     p = float(2 * stats.norm.sf(abs(score) * len(means) ** 0.5))
@@ -50,7 +50,7 @@ def test_a_weight_beyond_chance_is_selected(analysis):
     assert "selected against (" in told(analysis, -3.5, (-0.5,))
 
 
-def test_a_weight_that_may_have_drifted_says_how_long_would_decide(analysis):
+def test_a_weight_that_may_have_drifted_comes_with_the_time_that_would_decide(analysis):
     said = told(analysis, 1.5)
     times = (stats.norm.isf(0.05 / 12) / 1.5) ** 2  # the run took ten seconds
     wait = f"({math.ceil(times * 10)} seconds on this machine)"
@@ -59,7 +59,7 @@ def test_a_weight_that_may_have_drifted_says_how_long_would_decide(analysis):
     assert "nothing speaks for it" in told(analysis, 1.2)  # not even without correction
 
 
-def test_several_worlds_tell_how_many_went_beyond_chance(analysis):
+def test_for_several_worlds_the_number_beyond_chance_is_given(analysis):
     said = told(analysis, 2.0, (0.5, 0.1, -0.4))
     assert "(mean generation 8.3 to 12), the mean weight of normal food is -0.40 to +0.50 in 3 worlds" in said
     assert "on average +0.07" in said
@@ -77,7 +77,7 @@ def test_agents_that_do_not_learn_are_named(tmp_path: Path):
     assert len(said) == 3
 
 
-def test_what_is_not_known_is_said(analysis):
+def test_unknown_results_are_stated_as_such(analysis):
     assert answers(analysis.conditions, {}, analysis.runs) == {name: [UNKNOWN] for name in analysis.conditions}
     assert analyze(analysis.runs, ["food"]).answers == {}
 
