@@ -53,7 +53,7 @@ def test_the_draw_depends_on_the_seed_alone_and_uses_all_rows() -> None:
     assert len(set(draws)) > 40
     first = Counter(draw[0] for draw in draws)
     assert set(first) == set(range(6)), "any row may come first"
-    # The same with every version: this draw is part of what a run's seed means.
+    # Identical in every version: this draw is part of what a run's seed means.
     assert draws[1] == (5, 0, 4, 2, 3, 1)
 
 
@@ -97,7 +97,7 @@ def test_sources_and_mixtures() -> None:
         ('food\n"1\n', "it is not CSV"),
     ],
 )
-def test_a_bad_table_is_refused_with_its_place(text: str, message: str, tmp_path: Path) -> None:
+def test_a_bad_table_is_refused_and_the_place_is_named(text: str, message: str, tmp_path: Path) -> None:
     with pytest.raises(FounderError) as caught:
         table(text, tmp_path)
     assert message in str(caught.value)
@@ -124,7 +124,7 @@ def test_a_bad_source_is_refused(text: str, message: str) -> None:
     assert message in str(caught.value)
 
 
-def test_a_gene_that_another_species_has_is_not_offered() -> None:
+def test_a_gene_of_another_species_is_not_suggested() -> None:
     two = load_config("predator")
     for given, own in (("normal", "predator"), ("predator.normal", None)):
         said = unknown_gene(two, given, own)

@@ -1,4 +1,4 @@
-"""Tables as labelled arrays of xarray."""
+"""Tables as labeled arrays in xarray."""
 
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from hedon.record import open_run, to_xarray
 xarray: Any = pytest.importorskip("xarray", reason='needs the optional package: pip install "hedon[xarray]"')
 
 
-def test_a_run_is_over_seeds_and_steps(tmp_path: Path) -> None:
+def test_a_run_is_indexed_by_seed_and_step(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", intervals=6, worlds=3, extinct=1))
     found, rows = run.to_xarray(), run.population()
     assert found["alive"].dims == ("seed", "step")
@@ -38,7 +38,7 @@ def test_a_run_of_two_species_has_them_as_a_dimension(tmp_path: Path) -> None:
     assert found["species"].values.tolist() == ["predator", "prey"]
 
 
-def test_a_sweep_is_over_its_factors() -> None:
+def test_a_sweep_is_indexed_by_its_factors() -> None:
     rows = pl.DataFrame({"cost": [2.0, 1.0, 1.0], "seed": [7, 7, 8], "alive": [3, 5, None], "kind": ["a", "b", "c"]})
     found = to_xarray(rows, ["cost", "seed"])
     np.testing.assert_array_equal(found["alive"].values, [[5.0, np.nan], [3.0, np.nan]])

@@ -1,4 +1,4 @@
-"""The file of a checkpoint: it comes back as it was written, and no other file passes for one."""
+"""Checkpoint files: they read back unchanged, and no other file passes for one."""
 
 import io
 import os
@@ -36,7 +36,7 @@ def saved(folder: Path) -> Path:
     return checkpoint_path(folder, 7)
 
 
-def test_a_checkpoint_comes_back_as_it_was_written(tmp_path: Path) -> None:
+def test_a_checkpoint_reads_back_unchanged(tmp_path: Path) -> None:
     found = load_checkpoint(saved(tmp_path))
     assert found.head == head()
     assert isinstance(found.head.sampled[0].counters["births"], int)
@@ -46,8 +46,8 @@ def test_a_checkpoint_comes_back_as_it_was_written(tmp_path: Path) -> None:
     assert set(found.world(0)) == {"params", "head.step"}
 
 
-def test_what_is_read_lies_in_the_file(tmp_path: Path) -> None:
-    """A checkpoint may be larger than memory. Only Windows reads it whole: it removes no file that is mapped."""
+def test_arrays_are_mapped_from_the_file(tmp_path: Path) -> None:
+    """A checkpoint may be larger than memory. It is read whole only on Windows, which cannot remove a mapped file."""
     found = load_checkpoint(saved(tmp_path))
     mapped = [each.path for each in psutil.Process().memory_maps() if each.path.startswith(str(tmp_path))]
     assert bool(mapped) == (os.name != "nt")
@@ -72,7 +72,7 @@ def test_pieces_make_the_same_file_as_a_whole_array(tmp_path: Path) -> None:
         np.testing.assert_array_equal(np.load(file)["some"], array, strict=True)
 
 
-def test_numpy_reads_it_too(tmp_path: Path) -> None:
+def test_numpy_can_read_a_checkpoint_too(tmp_path: Path) -> None:
     with np.load(saved(tmp_path), allow_pickle=False) as file:
         np.testing.assert_array_equal(file["0/params"], ARRAYS["0/params"])
 
@@ -83,7 +83,7 @@ def test_the_newest_two_are_kept(tmp_path: Path) -> None:
     assert checkpoint_paths(tmp_path) == [checkpoint_path(tmp_path, 71), checkpoint_path(tmp_path, 72)]
 
 
-def test_every_cut_and_every_changed_byte_is_noticed(tmp_path: Path) -> None:
+def test_truncated_and_changed_files_are_detected(tmp_path: Path) -> None:
     path = saved(tmp_path)
     data = path.read_bytes()
     for length in range(0, len(data), 97):
@@ -97,7 +97,7 @@ def test_every_cut_and_every_changed_byte_is_noticed(tmp_path: Path) -> None:
             found = load_checkpoint(path)
         except RecordError:
             continue
-        passed += 1  # a time stamp of the archive, say: what counts is the content
+        passed += 1  # for example, a time stamp in the archive: only the content counts
         assert found.head == head()
         assert all(np.array_equal(found.arrays[name], arrays[name]) for name in arrays)
     assert passed < len(data) / 13 / 4
@@ -115,7 +115,7 @@ def npy(array: np.ndarray, **options) -> bytes:
 
 
 class Bomb:
-    """What a pickle of it does when it is loaded."""
+    """Fails the test if it is unpickled."""
 
     def __reduce__(self):
         return (pytest.fail, ("a checkpoint was executed",))
@@ -136,7 +136,7 @@ class Bomb:
         (npy(np.zeros(3)), zipfile.ZIP_STORED, "digest"),
     ],
 )
-def test_a_file_of_somebody_else_is_refused(tmp_path: Path, member: bytes, compression: int, words: str) -> None:
+def test_a_file_with_foreign_content_is_refused(tmp_path: Path, member: bytes, compression: int, words: str) -> None:
     path = saved(tmp_path)
     with zipfile.ZipFile(path, "a", compression) as archive:
         archive.writestr("more.npy", member)

@@ -1,4 +1,4 @@
-"""The digest of records: of rows, not of files."""
+"""The digest of records covers rows, not files."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ def folder(tmp_path: Path) -> Path:
     return run
 
 
-def test_the_cut_into_parts_and_the_order_of_worlds_do_not_count(folder: Path) -> None:
+def test_the_split_into_parts_and_the_order_of_worlds_do_not_count(folder: Path) -> None:
     before = records_digest(folder, KINDS)
     for table in ("agents", "population", "frames"):
         rows = pl.concat([pl.read_parquet(path) for path in part_paths(folder, table)])

@@ -38,7 +38,7 @@ def test_a_food_kind_that_repeats_a_column_is_refused() -> None:
         run_tables(Columns(("action",), 1))
 
 
-def test_weights_split_into_rewards_and_markers(tmp_path: Path) -> None:
+def test_weights_split_into_rewards_and_neutral_genes(tmp_path: Path) -> None:
     folder = write_run(tmp_path / "run", intervals=1, food_kinds=("normal", "poor"), neutral_count=2)
     run = open_run(folder)
     assert run.reward_names == ("w_normal", "w_poor", "w_action")
@@ -88,7 +88,7 @@ def test_revision_outside_of_a_checkout(tmp_path: Path) -> None:
     assert git_revision(tmp_path) == (None, None)
 
 
-def test_not_a_run_folder_names_the_nearest(tmp_path: Path) -> None:
+def test_the_error_for_a_folder_without_a_run_suggests_the_nearest(tmp_path: Path) -> None:
     write_run(tmp_path / "runs" / "baseline", intervals=1, worlds=1)
     (empty_folder := tmp_path / "elsewhere" / "empty").mkdir(parents=True)
     with pytest.raises(RecordError, match=r"does not exist; did you mean .*runs.baseline\?"):
@@ -111,7 +111,7 @@ def test_a_run_without_config_is_named(tmp_path: Path) -> None:
 
 
 def test_a_folder_may_have_any_name(tmp_path: Path) -> None:
-    """Signs that stand for several files elsewhere are letters here."""
+    """Characters that are wildcards elsewhere are ordinary ones here."""
     name = "[1, 2] #!" if os.name == "nt" else "[1, 2] *?"  # Windows allows neither * nor ?
     plain, strange = (open_run(write_run(tmp_path / each, intervals=2, worlds=1)) for each in ("run", name))
     assert strange.damaged_parts() == []

@@ -20,7 +20,7 @@ from hedon.record.writer import Writer
 MANIFEST = Manifest(food_kinds=("normal",), neutral_count=1, seeds=(1,), steps_asked=10_000)
 
 
-def test_rows_come_back_as_they_were_given(tmp_path: Path) -> None:
+def test_rows_read_back_unchanged(tmp_path: Path) -> None:
     world = SyntheticWorld(0, 7)
     rows = [world.step()[1] for _ in range(5)]
     living = world.living_rows()
@@ -55,7 +55,7 @@ def test_parts_are_written_when_full_and_none_is_lost(tmp_path: Path) -> None:
     assert steps == [i for i in range(20) for _ in range(10)]
 
 
-def test_reader_sees_rows_while_the_run_goes_on(tmp_path: Path) -> None:
+def test_a_reader_sees_rows_during_the_run(tmp_path: Path) -> None:
     world = SyntheticWorld(0, 7)
     with Writer(tmp_path / "run", "", MANIFEST) as writer:
         writer.append("population", population_rows([world.step()[1]]))
@@ -66,7 +66,7 @@ def test_reader_sees_rows_while_the_run_goes_on(tmp_path: Path) -> None:
             time.sleep(0.01)
 
 
-def test_flush_returns_when_all_is_on_disk(tmp_path: Path) -> None:
+def test_flush_returns_once_everything_is_on_disk(tmp_path: Path) -> None:
     world = SyntheticWorld(0, 7)
     with Writer(tmp_path / "run", "", MANIFEST) as writer:
         writer.append("agents", world.step()[0])
@@ -89,15 +89,15 @@ def test_an_agent_that_died_counts_once(tmp_path: Path) -> None:
     assert agents["death_step"].is_not_null().sum() == len(dead["agent_id"])
 
 
-def test_what_a_reader_sees_is_one_moment(tmp_path: Path) -> None:
-    """Deaths that reach the disk after the living are not seen before the next living are: births would be missing."""
+def test_a_reader_sees_a_single_moment(tmp_path: Path) -> None:
+    """Deaths written after the living are not seen until the next living are; otherwise births would be missing."""
     world = SyntheticWorld(0, 7)
     with Writer(tmp_path / "run", "", MANIFEST, part_rows=1) as writer:
         writer.replace_living(world.living_rows())
         for _ in range(5):
             dead, _ = world.step()
             writer.append("agents", dead)
-            writer.flush()  # as a full part, or a checkpoint, does
+            writer.flush()  # as happens with a full part or a checkpoint
             before = set(open_run(tmp_path / "run").agents()["agent_id"])
             assert before == set(range(len(before))), "an agent is missing"
             writer.replace_living(world.living_rows())
@@ -120,10 +120,10 @@ def test_a_folder_that_is_removed_or_replaced_is_noticed_at_once(tmp_path: Path)
         writer.save_manifest(MANIFEST)
     with pytest.raises(RecordError, match="was removed or replaced"):
         writer.close()
-    assert [path.name for path in (tmp_path / "run").rglob("*")] == ["agents"], "nothing is written into the other"
+    assert [path.name for path in (tmp_path / "run").rglob("*")] == ["agents"], "nothing is written to the new folder"
 
 
-def test_a_folder_that_vanishes_between_the_check_and_the_write_is_told_the_same_way(
+def test_a_folder_that_vanishes_between_the_check_and_the_write_is_reported_the_same_way(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     writer = Writer(tmp_path / "run", "", MANIFEST)
@@ -182,7 +182,7 @@ def test_scalars_and_left_out_nullable_columns(tmp_path: Path) -> None:
     assert frames["id"].null_count() == frames["angle"].null_count() == 3
 
 
-def test_a_fault_of_the_thread_reaches_the_caller_and_earlier_parts_stay(tmp_path: Path) -> None:
+def test_an_error_in_the_thread_reaches_the_caller_and_earlier_parts_stay(tmp_path: Path) -> None:
     world = SyntheticWorld(0, 7)
     rows = population_rows([world.step()[1]])
     writer = Writer(tmp_path / "run", "", MANIFEST, part_rows=1)
@@ -195,7 +195,7 @@ def test_a_fault_of_the_thread_reaches_the_caller_and_earlier_parts_stay(tmp_pat
         writer.flush()
     with pytest.raises(RecordError, match="cannot write records"):
         writer.append("population", rows)
-    for _ in range(200):  # more than the queue holds: nobody may hang
+    for _ in range(200):  # more than the queue holds: nothing may hang
         writer._queue.put(("population", pl.DataFrame()))
     with pytest.raises(RecordError, match="cannot write records"):
         writer.close()
@@ -222,7 +222,7 @@ def test_a_full_disk_leaves_no_torn_part(tmp_path: Path, monkeypatch: pytest.Mon
     assert not list((tmp_path / "run/population").iterdir())
 
 
-def test_the_fault_is_raised_once_out_of_the_context(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_leaving_the_context_raises_the_error_only_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = population_rows([SyntheticWorld(0, 7).step()[1]])
 
     def run() -> None:
@@ -236,7 +236,7 @@ def test_the_fault_is_raised_once_out_of_the_context(tmp_path: Path, monkeypatch
     assert not isinstance(caught.value.__context__, RecordError)
 
 
-def test_an_error_in_the_run_still_writes_what_waits(tmp_path: Path) -> None:
+def test_waiting_rows_are_written_even_after_an_error_in_the_run(tmp_path: Path) -> None:
     rows = population_rows([SyntheticWorld(0, 7).step()[1]])
     writer = Writer(tmp_path / "run", "", MANIFEST)
 
@@ -264,7 +264,7 @@ def test_a_reader_never_sees_a_torn_file(tmp_path: Path) -> None:
             while not stop.is_set():
                 try:
                     assert run.agents().height in (0, len(living["agent_id"]))
-                except Exception as error:  # judged below, in the main thread
+                except Exception as error:  # checked below, in the main thread
                     faults.append(error)
 
         reader = threading.Thread(target=read)
@@ -291,7 +291,7 @@ def test_a_million_steps_take_less_than_30_megabytes(tmp_path: Path) -> None:
     assert size * 1e6 / (200 * INTERVAL) < 30e6
 
 
-def test_every_gene_says_what_it_is() -> None:
+def test_every_gene_has_a_description() -> None:
     genes = [
         "reward.family=between",
         "reward.gate=age",

@@ -1,4 +1,4 @@
-"""A run shows itself, and gives its tables to the library that is asked for."""
+"""How a run is displayed, and how it hands its tables to other libraries."""
 
 import builtins
 import re
@@ -21,7 +21,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     return open_run(write_run(tmp_path_factory.mktemp("shown") / "run", intervals=12, worlds=2))
 
 
-def test_a_run_says_in_a_line_what_it_is(run: Run) -> None:
+def test_a_run_describes_itself_in_one_line(run: Run) -> None:
     assert repr(run) == f"<Run {run.path}: baseline (corrected), 2 worlds, finished at step 12,288 of 12,288>"
 
 
@@ -41,7 +41,7 @@ def test_a_notebook_shows_worlds_and_a_figure(run: Run) -> None:
     assert np.unravel_index(heights.argmin(), heights.shape) == np.unravel_index(alive.argmax(), alive.shape)
 
 
-def test_what_a_manifest_says_is_no_markup(run: Run) -> None:
+def test_text_from_a_manifest_is_escaped(run: Run) -> None:
     named = replace(run, path=Path("<img src=x>"), manifest=replace(run.manifest, name="<script>"))
     object.__setattr__(named, "population", run.population)
     assert not re.search("<img|<script", named._repr_html_())
@@ -62,7 +62,7 @@ def test_pandas_has_the_same_rows(table: str, run: Run) -> None:
     for name in ours.columns:
         assert theirs[name].isna().tolist() == ours[name].is_null().to_list(), name
         assert theirs[name].dropna().tolist() == ours[name].drop_nulls().to_list(), name
-    theirs.loc[0, "seed"] = 5  # a copy, which may be changed
+    theirs.loc[0, "seed"] = 5  # a copy, so it can be changed
 
 
 def test_other_libraries_are_refused(run: Run) -> None:

@@ -4,7 +4,7 @@ import pytest
 from hedon.statistic.bootstrap import percentile_interval, resampled_sums
 
 
-def test_the_bootstrap_has_the_spread_of_theory() -> None:
+def test_the_bootstrap_has_the_theoretical_spread() -> None:
     """The mean of n numbers varies by σ/√n; with clusters of equal numbers, n is the number of clusters."""
     rng = np.random.default_rng(7)
     values = rng.normal(size=1000)

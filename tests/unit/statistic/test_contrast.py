@@ -15,7 +15,7 @@ def chance(rejected: np.ndarray, share: float, other: float) -> float:
     return float(stats.binom.pmf(np.arange(n + 1), n, share) @ rejected @ stats.binom.pmf(np.arange(m + 1), m, other))
 
 
-def test_mid_p_is_fishers_p_less_half_of_what_is_as_likely() -> None:
+def test_mid_p_is_fishers_p_minus_half_the_probability_of_equally_likely_tables() -> None:
     for a, n, b, m in ((3, 10, 9, 10), (0, 5, 5, 5), (5, 5, 5, 10), (7, 12, 2, 6)):
         _, full = stats.fisher_exact([[a, n - a], [b, m - b]])
         chances = stats.hypergeom.pmf(np.arange(n + 1), n + m, a + b, n)
@@ -26,7 +26,7 @@ def test_mid_p_is_fishers_p_less_half_of_what_is_as_likely() -> None:
 
 @pytest.mark.parametrize(("n", "m"), [(5, 10), (10, 10), (20, 10), (20, 5)])
 def test_two_equal_shares_are_called_different_no_more_often_than_promised(n: int, m: int) -> None:
-    """Exact, over all tables. The mid-p test may pass 5 % by little at single shares: 5.5 % at most for n up to 40."""
+    """Exact, over all tables. At some shares the mid-p test slightly exceeds 5 %: 5.5 % at most for n up to 40."""
     rejected = rejections(n, m)
     size = [chance(rejected, share, share) for share in np.linspace(0.01, 0.99, 50)]
     assert max(size) < 0.055
@@ -35,7 +35,7 @@ def test_two_equal_shares_are_called_different_no_more_often_than_promised(n: in
 
 def test_the_power_to_differ_from_the_paper() -> None:
     assert chance(rejections(10, 10), 0.2, 0.8) == pytest.approx(0.81, abs=0.01)
-    assert chance(rejections(5, 5), 0.2, 0.8) == pytest.approx(0.38, abs=0.01)  # five against five see little
+    assert chance(rejections(5, 5), 0.2, 0.8) == pytest.approx(0.38, abs=0.01)  # five against five have little power
     assert chance(rejections(20, 5), 0.1, 0.9) > 0.95
 
 
@@ -56,7 +56,7 @@ def test_five_of_five_are_most_and_four_of_five_are_not() -> None:
     assert share_interval(5, 5)[0] > 0.6
     assert share_interval(4, 5)[0] < 0.5
     assert share_interval(0, 5)[0] == 0.0
-    # A share of one half passes for most by chance: 3.1 % of five worlds, 1.1 % of ten.
+    # A share of one half passes for a majority by chance in 3.1 % of cases with five worlds, in 1.1 % with ten.
     for of, size in ((5, 0.031), (10, 0.011)):
         counts = [k for k in range(of + 1) if share_interval(k, of)[0] > 0.5]
         assert stats.binom.pmf(counts, of, 0.5).sum() == pytest.approx(size, abs=0.001)

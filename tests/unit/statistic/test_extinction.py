@@ -13,11 +13,11 @@ def test_a_world_that_ends_early_is_censored() -> None:
     assert found.share == pytest.approx(1 - 0.75 * 0.5)
     assert (found.worlds, found.extinct, found.followed, found.known_until) == (4, 2, 1, 8.0)
     later = extinct_share(np.array([1.0, 2.0, 30.0, 9.0]), np.array([True, False, True, False]), 8.0)
-    assert (later.share, later.extinct, later.followed) == (0.25, 1, 2)  # who dies out later lived at the step
+    assert (later.share, later.extinct, later.followed) == (0.25, 1, 2)  # it was alive at the step and died out later
 
 
-def test_where_nobody_was_followed_nothing_limits_the_share_from_above() -> None:
-    """14 worlds die out early and 26 live at half of the time: the share is at least some 35 %, and may be all."""
+def test_if_no_world_was_followed_nothing_limits_the_share_from_above() -> None:
+    """14 worlds die out early and 26 are alive halfway: the share is at least about 35 %, and may be 100 %."""
     found = extinct_share(np.repeat([100.0, 500.0], [14, 26]), np.repeat([True, False], [14, 26]), 1000.0)
     assert (found.share, found.high, found.known_until) == (pytest.approx(0.35), 1.0, 500.0)
     assert 0.2 < found.low < 0.25
@@ -30,7 +30,7 @@ def test_without_censoring_it_is_the_mid_p_interval_of_a_share(extinct: int) -> 
     found = extinct_share(np.where(died, np.arange(1.0, 11.0), 100.0), died, 100.0)
     assert found.share == pytest.approx(extinct / 10)
 
-    def above(share: float) -> float:  # chance of so many or more, those equal counted by half
+    def above(share: float) -> float:  # probability of as many or more, ties counted half
         return float(stats.binom.sf(extinct, 10, share) + 0.5 * stats.binom.pmf(extinct, 10, share))
 
     if extinct:
@@ -42,7 +42,7 @@ def test_without_censoring_it_is_the_mid_p_interval_of_a_share(extinct: int) -> 
 
 @pytest.mark.parametrize(("share", "cut"), [(0.1, 0.5), (0.5, 0.0), (0.5, 0.5), (0.9, 0.5)])
 def test_the_interval_covers_with_few_worlds_and_many_censored(share: float, cut: float) -> None:
-    """Ten worlds with exponential times to extinction, a part of them cut at a random time before the step."""
+    """Ten worlds with exponential times to extinction, some of them cut at a random time before the step."""
     rng, trials = np.random.default_rng(1), 200
     hits = 0
     for _ in range(trials):
@@ -65,7 +65,7 @@ def test_the_log_rank_test_agrees_with_that_of_scipy_for_many_worlds() -> None:
 
 
 def test_the_log_rank_test_compares_within_settings() -> None:
-    """All that differs is the setting, which is not spread evenly over the groups."""
+    """Only the setting differs, and it is not spread evenly over the groups."""
     lived, first = np.repeat([10.0, 90.0], 12), np.array([True] * 10 + [False] * 2 + [True] * 2 + [False] * 10)
     ended, setting = np.ones(24, np.bool_), np.repeat([0, 1], 12)
     assert log_rank(lived, ended, first, np.zeros(24, np.int64)) < 0.01

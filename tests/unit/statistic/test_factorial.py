@@ -53,7 +53,7 @@ def test_one_world_per_cell_has_no_interval() -> None:
     assert all(e.seed_low == e.seed_high == pytest.approx(e.estimate) for e in fit.effects)
 
 
-def test_cells_count_alike_whatever_their_number_of_worlds() -> None:
+def test_cells_count_equally_whatever_their_number_of_worlds() -> None:
     rng = np.random.default_rng(2)
     cells = design(CELLS, TRUE, 0.0, 2, rng)
     cells[CELLS[0]] |= dict.fromkeys(range(3, 9), cells[CELLS[0]][1])
@@ -73,13 +73,13 @@ def test_intervals_cover_as_often_as_promised() -> None:
         fit = fit_factorial(design(CELLS, effects, 1.5, 2, rng), 3)
         covered += sum(effect.low <= TRUE[effect.factors] <= effect.high for effect in fit.effects)
         false_alarms += next(effect.p for effect in fit.effects if effect.factors == (0, 2)) < 0.05
-    # The seven effects of a trial share the estimates of the variances: bounds of some 4 standard errors. Each cell has
-    # a variance of its own, so with two worlds per cell the degrees of freedom are few, and intervals too wide.
+    # The seven effects of a trial share the variance estimates, hence bounds of about 4 standard errors. Each cell has
+    # its own variance, so with two worlds per cell there are few degrees of freedom, and the intervals are too wide.
     assert 0.925 < covered / (7 * trials) < 0.99
     assert false_alarms / trials < 0.095
 
 
-def test_two_cells_are_compared_by_welch() -> None:
+def test_two_cells_are_compared_with_welchs_test() -> None:
     few, many = [3.0, 9.0, -4.0], [1.0, 1.5, 0.5, 1.2, 0.9]
     fit = fit_factorial({(True,): dict(enumerate(few)), (False,): dict(enumerate(many))}, 1)
     (effect,) = fit.effects
@@ -88,7 +88,7 @@ def test_two_cells_are_compared_by_welch() -> None:
     assert (effect.low, effect.high) == pytest.approx(tuple(known.confidence_interval()))
 
 
-def test_few_cells_unequal_in_number_cover_too() -> None:
+def test_intervals_also_cover_with_a_missing_cell_and_unequal_numbers() -> None:
     rng = np.random.default_rng(4)
     true = {(0,): 2.0, (1,): -1.0, (2,): 0.5, (0, 1): 4.0, (0, 2): 0.0, (1, 2): -3.0}
     covered = total = 0
@@ -102,7 +102,7 @@ def test_few_cells_unequal_in_number_cover_too() -> None:
 
 
 def test_a_missing_cell_leaves_out_the_interaction_of_all() -> None:
-    """Seven cells tell seven numbers: with no interaction of three, all others are exact."""
+    """Seven cells determine seven numbers: if there is no three-way interaction, all others are exact."""
     true = {group: size for group, size in TRUE.items() if len(group) < 3}
     for missing in range(8):
         cells = [cell for i, cell in enumerate(CELLS) if i != missing]
@@ -112,14 +112,14 @@ def test_a_missing_cell_leaves_out_the_interaction_of_all() -> None:
         assert {effect.order for effect in fit.effects} == {2}
 
 
-def test_what_cells_cannot_tell_apart_is_not_told() -> None:
+def test_effects_that_cells_cannot_separate_are_left_out() -> None:
     none, first, every = (False,) * 3, (True, False, False), (True,) * 3
     rng = np.random.default_rng(6)
-    # The second and third factor come together, so neither is told; the first is, though another cell has it too.
+    # The second and third factors occur only together, so neither is estimated; the first is, though in two cells.
     fit = fit_factorial(design([none, first, every], TRUE, 0.0, 2, rng), 3)
     assert estimates(fit) == pytest.approx({(0,): cell_mean(first, TRUE) - cell_mean(none, TRUE)})
     assert set(fit.left_out) == set(TRUE) - {(0,)}
-    # A half of the design: additive models would take the interactions of the others for the second factor.
+    # Half of the design: an additive model would mistake the interactions of the others for the second factor.
     half = [none, first, (False, False, True), every]
     assert set(estimates(fit_factorial(design(half, TRUE, 0.0, 2, rng), 3))) == {(0,), (2,)}
     assert fit_factorial(design([none, every], TRUE, 0.0, 2, rng), 3).effects == ()
@@ -127,8 +127,8 @@ def test_what_cells_cannot_tell_apart_is_not_told() -> None:
     assert fit_factorial({}, 3).left_out == tuple(all_effects(3))
 
 
-def test_what_is_told_of_some_cells_never_holds_another_effect() -> None:
-    """Whichever cells there are: changing all effects that do not include a factor changes no estimate of its own."""
+def test_an_estimate_from_some_cells_never_contains_another_effect() -> None:
+    """With any cells, changing all effects that do not include a group of factors leaves its estimate unchanged."""
     rng = np.random.default_rng(8)
     told = 0
     for chosen in range(1, 256):
@@ -142,7 +142,7 @@ def test_what_is_told_of_some_cells_never_holds_another_effect() -> None:
     assert told > 255
 
 
-def test_a_sure_effect_is_found_and_corrected_for_seven() -> None:
+def test_a_clear_effect_is_found_and_corrected_for_seven_tests() -> None:
     fit = fit_factorial(design(CELLS, {(1,): 6.0}, 1.0, 2, np.random.default_rng(7)), 3)
     found = {effect.factors: effect for effect in fit.effects}
     assert found[(1,)].p < 1e-3

@@ -16,7 +16,7 @@ def test_the_gradient_is_a_multiple_regression() -> None:
     np.testing.assert_allclose(s, [np.cov(omega, z[:, i], ddof=0)[0, 1] for i in range(3)], rtol=1e-9)
 
 
-def test_a_fitness_that_nobody_has_is_no_warning() -> None:
+def test_a_fitness_of_zero_for_all_raises_no_warning() -> None:
     rng = np.random.default_rng(1)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -1,4 +1,4 @@
-"""Intervals of quantities that cannot be negative, or above one."""
+"""Intervals of quantities that cannot be negative or cannot exceed one."""
 
 import polars as pl
 import pytest
@@ -12,7 +12,7 @@ shares = st.lists(st.sampled_from([0.0, 0.01, 0.4, 0.99, 1.0]), min_size=5, max_
 
 
 @given(shares)
-def test_an_interval_is_cut_at_what_is_possible(values):
+def test_an_interval_is_clipped_to_possible_values(values):
     free, cut = mean_interval(values), mean_interval(values, within=SHARE)
     assert (cut.mean, cut.worlds) == (free.mean, free.worlds)
     assert free.low is not None
@@ -21,7 +21,7 @@ def test_an_interval_is_cut_at_what_is_possible(values):
     assert max(free.low, 0.0) <= (cut.mean or 0.0) <= min(free.high, 1.0)
 
 
-def test_a_table_says_what_is_possible_by_column():
+def test_a_table_limits_the_possible_values_by_column():
     rows = pl.DataFrame(
         {"condition": ["one"] * 5, "energy": [0.1, 0.2, 0.1, 0.3, 9.0], "weight": [0.0, 0.0, 0.0, 0.0, 9.0]}
     )

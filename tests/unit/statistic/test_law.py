@@ -1,4 +1,4 @@
-"""Quantiles and tails are those of `scipy.stats`, bit for bit."""
+"""Quantiles and tails equal those of `scipy.stats`, bit for bit."""
 
 import numpy as np
 from scipy import stats
@@ -9,7 +9,7 @@ SHARES = np.concatenate([np.random.default_rng(1).random(200), [0.025, 0.5, 0.97
 VALUES = np.random.default_rng(2).normal(0.0, 3.0, 200).tolist()
 
 
-def test_they_are_the_bits_of_scipy_stats():
+def test_values_match_scipy_stats_bit_for_bit():
     for share in SHARES:
         assert law.normal_quantile(share) == stats.norm.ppf(share)
         for degrees in (1, 4, 11):

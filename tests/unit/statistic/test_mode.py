@@ -7,7 +7,7 @@ from hedon.statistic.mode import LEVEL, dip, modes
 
 
 def dip_by_programming(x: np.ndarray) -> float:
-    """The definition: the least distance to a distribution that is convex up to a data point and concave from it."""
+    """By definition: the least distance to a distribution that is convex up to a data point and concave after it."""
     points, first, counts = np.unique(x, return_index=True, return_counts=True)
     jumps = np.stack([first, first + counts], axis=1) / len(x)
     return min(_distance(points, jumps, mode) for mode in range(len(points)))
@@ -54,12 +54,12 @@ def test_the_dip_is_the_distance_to_the_nearest_distribution_with_one_mode() -> 
     for trial in range(40):
         n = int(rng.integers(3, 13))
         x = rng.normal(size=n) + (trial % 3) * 2.0 * (rng.random(n) < 0.5)
-        x = np.sort(np.round(x) if trial % 4 == 0 else x)  # also with equal values
+        x = np.sort(np.round(x) if trial % 4 == 0 else x)  # sometimes with equal values
         assert dip(x) == pytest.approx(dip_by_programming(x), abs=1e-8)
 
 
-def test_dips_that_are_known() -> None:
-    assert dip(np.arange(10.0)) == pytest.approx(1 / 20)  # evenly spread: the least there is
+def test_known_dips() -> None:
+    assert dip(np.arange(10.0)) == pytest.approx(1 / 20)  # evenly spread: the smallest possible dip
     assert dip(np.array([0.0] * 5 + [1.0] * 5)) == pytest.approx(0.25)
     tight = np.concatenate([np.linspace(0, 1e-9, 50), 1 + np.linspace(0, 1e-9, 50)])
     assert dip(tight) == pytest.approx(0.25, abs=0.01)
@@ -84,8 +84,8 @@ def test_two_modes_are_found_and_counted() -> None:
     assert found.p < 0.01
 
 
-def test_power_counts_the_chance_by_which_worlds_split() -> None:
-    """Thirty worlds find two clear modes in four of five tries; ten, in a third."""
+def test_power_allows_for_the_chance_in_how_worlds_split() -> None:
+    """Thirty worlds find two clear modes four times out of five; ten find them about a third of the time."""
     values = np.random.default_rng(5).normal(size=FOR_VERDICT)
     power = {count: modes(values[:count]).power for count in (5, 10, FOR_VERDICT)}
     assert power[5] < 0.2
@@ -97,7 +97,7 @@ def test_power_counts_the_chance_by_which_worlds_split() -> None:
     assert found == pytest.approx(power[FOR_VERDICT], abs=0.1)
 
 
-def test_that_no_second_mode_is_found_decides_nothing() -> None:
+def test_finding_no_second_mode_decides_nothing() -> None:
     rng = np.random.default_rng(4)
     assert [modes(rng.normal(size=n)).answer for n in (0, 3, 5, 40)] == ["undecided"] * 4
     assert modes(np.full(20, 2.0)).answer == "undecided"

@@ -7,7 +7,7 @@ TIMES = 61
 
 
 def pulled(rng: np.random.Generator, count: int, rate: float, optimum: float = 0.0) -> np.ndarray:
-    """Courses from 0 with steps of three degrees of freedom, whose tails are heavy, shape (count, TIMES)."""
+    """Courses from 0 with heavy-tailed steps (Student's t, three degrees of freedom), shape (count, TIMES)."""
     courses = np.zeros((count, TIMES))
     for i, shock in enumerate(rng.standard_t(3, (TIMES - 1, count))):
         courses[:, i + 1] = courses[:, i] + (1 - np.exp(-rate)) * (optimum - courses[:, i]) + shock
@@ -32,16 +32,16 @@ def covered(low: np.ndarray, value: float, high: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize("worlds", [1, 5])
-def test_brownian_motion_is_called_held_as_often_as_promised(worlds: int) -> None:
+def test_brownian_motion_is_called_held_no_more_often_than_promised(worlds: int) -> None:
     p, strength, low, high, optimum, *_ = answers(0.0, 0.0, worlds, 120 // worlds)
     assert np.mean(p <= 0.05) <= 0.05 + 3 * np.sqrt(0.05 * 0.95 / len(p))
     assert covered(low, 0.0, high) >= 0.95 - 3 * np.sqrt(0.05 * 0.95 / len(p))
-    assert np.median(strength) < 0.01  # not biased, as the plain estimate is, by some 4 / 60
+    assert np.median(strength) < 0.01  # not biased by about 4 / 60, as the plain estimate is
     assert np.isnan(optimum[p > 0.05]).all()
 
 
 def test_a_pull_is_found_with_its_strength_and_optimum() -> None:
-    """Five worlds of 60 intervals, each of which forgets a tenth of the distance: power nearly 1."""
+    """Five worlds of 60 intervals, each of which closes a tenth of the distance: the power is nearly 1."""
     trials = 30
     p, strength, low, high, optimum, optimum_low, optimum_high = answers(0.1, 5.0, 5, trials)
     assert np.mean(p <= 0.05) > 0.9
@@ -62,18 +62,18 @@ def test_strength_and_p_do_not_depend_on_units() -> None:
     assert (other.optimum, other.optimum_high) == pytest.approx((10 * one.optimum + 3, 10 * one.optimum_high + 3))
 
 
-def test_courses_without_a_change_say_nothing() -> None:
+def test_courses_without_a_change_give_no_answer() -> None:
     assert reversion([np.zeros(20), np.array([0.0, 1.0])], [np.zeros((9, 20)), np.zeros((9, 2))]) is None
     assert reversion([], []) is None
-    late = np.concatenate([np.zeros(19), [1.0]])  # nothing was there to be pulled back from
+    late = np.concatenate([np.zeros(19), [1.0]])  # there was nothing to be pulled back from
     assert reversion([late], [np.zeros((9, 20))]) is None
     found = reversion([np.arange(20.0) % 3], [np.stack([late] * 8 + [np.arange(20.0) % 2])])
     assert found is not None
-    assert found.p == pytest.approx(2 / 10)  # one neutral gene goes back more surely; those that stand still do not
+    assert found.p == pytest.approx(2 / 10)  # one neutral gene reverts more clearly; those that do not move do not
 
 
 def test_a_course_that_is_unlike_drift_but_not_pulled_has_no_optimum():
-    """Steps that shrink: a test against drift may reject, but the strength that fits best is 0."""
+    """If steps shrink, the test against drift may reject although the best-fitting strength is 0."""
     for seed in range(20):
         rng = np.random.default_rng(seed)
         time = np.linspace(0, 1, int(rng.integers(8, 60)))

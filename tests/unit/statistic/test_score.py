@@ -21,7 +21,7 @@ def test_a_trait_that_cannot_change_has_no_test() -> None:
 
 
 def test_ranks_among_ties_are_drawn() -> None:
-    """Half of the draws did not change, nor did the trait: its scores spread as wide as under drift."""
+    """Half of the draws are tied at no change; the scores of a trait drawn from them still spread as under drift."""
     rng = np.random.default_rng(2)
     null = np.concatenate([np.zeros(500), rng.normal(size=500)])
     scores = [rank_score(float(rng.choice(null)), null, rng) for _ in range(4000)]

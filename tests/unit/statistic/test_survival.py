@@ -4,7 +4,7 @@ from scipy import stats
 
 from hedon.statistic.survival import exposure_mean, restricted_mean, survival_curve
 
-# Remission times of the 6-MP group of Freireich et al. (1963), the textbooks' example.
+# Remission times of the 6-MP group of Freireich et al. (1963), a textbook example.
 DIED = [6, 6, 6, 7, 10, 13, 16, 22, 23]
 CENSORED = [6, 9, 10, 11, 17, 19, 20, 25, 32, 32, 34, 35]
 DURATION = np.array(DIED + CENSORED, np.float64)
@@ -29,9 +29,9 @@ def test_greenwood_on_the_log_log_scale() -> None:
         assert bound[2] == pytest.approx(share ** np.exp(sign * 1.959964 * error), rel=1e-6)
 
 
-@pytest.mark.filterwarnings("ignore:The confidence interval is undefined")  # where nobody is left
+@pytest.mark.filterwarnings("ignore:The confidence interval is undefined")  # where no agent is left
 @pytest.mark.parametrize("shown", [1.0, 0.6, 0.1])
-def test_curve_and_interval_are_those_of_scipy(shown: float) -> None:
+def test_curve_and_interval_match_scipy(shown: float) -> None:
     rng = np.random.default_rng(3)
     duration, died = rng.integers(1, 60, 300).astype(np.float64), rng.uniform(size=300) < shown
     curve = survival_curve(duration, died, 0.9)
@@ -56,7 +56,7 @@ def test_without_censoring_it_is_the_empirical_distribution() -> None:
 
 
 def test_the_mean_of_the_dead_is_too_small_where_the_restricted_mean_is_right() -> None:
-    """Exponential lives of mean 1, entry spread over time, cut at the end of the record."""
+    """Exponential lifetimes with mean 1 that start at different times and are cut at the end of the record."""
     rng = np.random.default_rng(1)
     until, hits, dead = 1.5, 0, []
     truth = 1 - np.exp(-until)
@@ -83,7 +83,7 @@ def test_the_intervals_of_the_curve_cover() -> None:
     assert 0.92 <= hits / 300 <= 0.98
 
 
-def test_nobody_died() -> None:
+def test_no_deaths() -> None:
     curve = survival_curve(np.array([3.0, 4.0]), np.zeros(2, bool))
     assert len(curve.age) == 0
     assert curve.trusted_age() == 0
