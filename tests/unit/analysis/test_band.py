@@ -1,4 +1,4 @@
-"""Each gene has a band of drift of its own, from its own founders and mutations."""
+"""Each gene has its own drift band, from its own founders and mutations."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -38,8 +38,8 @@ def at_end(worlds: list[WorldRecord], weight: str) -> tuple[float, float]:
     return float(band.low[-1]), float(band.high[-1])
 
 
-def test_a_gene_that_begins_elsewhere_has_its_band_there(tmp_path: Path) -> None:
-    """The gene of `moved` begins at 1.0 ± 0.05; its founders' means differ by 0.05/√60, not by 0.5/√60 around 0."""
+def test_a_gene_that_starts_elsewhere_has_its_band_there(tmp_path: Path) -> None:
+    """The gene of `moved` starts at 1.0 ± 0.05; its founders' means differ by 0.05/√60, not by 0.5/√60 around 0."""
     config = load_config("appetite", overrides=[MOVED, *TINY])
     run(RunPlan(config, (1,), 1536, tmp_path / "run", 1))
     (world,) = read_worlds([open_run(tmp_path / "run")])
@@ -57,7 +57,9 @@ def test_a_gene_that_begins_elsewhere_has_its_band_there(tmp_path: Path) -> None
     assert np.std(genes["w_moved"]) < 0.3 * np.std(genes["w_normal"])
 
 
-def test_a_gene_of_alike_founders_shows_selection_that_the_neutral_genes_would_hide(worlds: list[WorldRecord]) -> None:
+def test_a_gene_with_identical_founders_shows_selection_that_neutral_genes_would_hide(
+    worlds: list[WorldRecord],
+) -> None:
     alike = changed(worlds, "food.normal.gene.initial_sd=0.0", "genome.mutation.w_normal={scale=0.001}")
     low, high = at_end(alike, "w_normal")
     wide_low, wide_high = at_end(alike, "neutral_1")
@@ -93,7 +95,7 @@ def test_recorded_neutral_genes_stay_in_their_band(worlds: list[WorldRecord]) ->
     assert 0.85 < np.mean(inside) <= 1.0  # 95 % of 32 genes at three times
 
 
-def test_without_walks_the_recorded_neutral_genes_are_a_control_for_their_own_law_alone(
+def test_without_walks_recorded_neutral_genes_are_a_control_only_for_genes_of_the_same_law(
     worlds: list[WorldRecord],
 ) -> None:
     pairs = changed(worlds, 'birth.mating="pairs"', "genome.action.initial_mean=1.0")

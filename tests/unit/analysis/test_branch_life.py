@@ -1,4 +1,4 @@
-"""Lives of a branch: those who lived when it began are survivors, and must not make lives look longer."""
+"""Lives in a branch: the agents alive at its start are survivors and must not make lives look longer."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ LIVELY = (
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """A run, and the same world from its middle on as a branch in which nothing is changed."""
+    """A run, and the second half of the same world as a branch without changes."""
     folder = tmp_path_factory.mktemp("branch")
     config = load_config("baseline", overrides=LIVELY)
     run(RunPlan(config, (1,), MIDDLE, folder / "half", 1))
@@ -34,7 +34,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return folder / "whole", folder / "branch"
 
 
-def test_lives_of_a_branch_are_those_of_the_run_that_were_born_after_it_began(runs):
+def test_lives_of_a_branch_are_those_of_the_run_born_after_its_start(runs):
     (whole,), (later,) = (read_worlds([open_run(folder)]) for folder in runs)
     assert (whole.first_step, later.first_step) == (0, MIDDLE)
     assert whole.born.equals(whole.agents)
@@ -50,14 +50,14 @@ def test_lives_of_a_branch_are_those_of_the_run_that_were_born_after_it_began(ru
     assert world["mean_lifetime"] == pytest.approx(mean)
 
 
-def test_cohorts_of_a_branch_have_nobody_who_was_born_before_it(runs):
+def test_cohorts_of_a_branch_exclude_agents_born_before_it(runs):
     (later,) = read_worlds([open_run(runs[1])])
     rows = reproductive_success({later.condition: [later]})[1].rows
     assert rows["agents"].sum() == later.born.height
     assert all(table.rows.height for table in price_topic({later.condition: [later]}))
 
 
-def test_a_branch_of_two_species_that_was_resumed_is_still_one(tmp_path: Path) -> None:
+def test_a_resumed_branch_of_two_species_is_still_a_branch(tmp_path: Path) -> None:
     lively = ("species.prey.birth.kappa=0.02", "species.prey.hazard.alpha_age=0.004")
     config = load_config("predator", overrides=[*QUICK, *lively])
     run(RunPlan(config, (1,), 128, tmp_path / "half", 1))

@@ -50,7 +50,7 @@ def test_lifetime_reproductive_success() -> None:
     assert reproduction(AGENTS.head(0))["mean"] is None
 
 
-def test_the_budget_is_that_of_the_ledger(tmp_path: Path) -> None:
+def test_the_budget_agrees_with_the_ledger(tmp_path: Path) -> None:
     run = open_run(write_run(tmp_path / "run", worlds=1, intervals=20, snapshot=False))
     rows = run.population()
     found = energy_budget(rows)

@@ -31,12 +31,12 @@ def test_courses_are_means_over_the_living(worlds: list[WorldRecord]) -> None:
     still = MutationLaw(mean=0.0, sd=1.0, scale=0.0, limit=1e6, tabulated=False, window=1024, late=False)
     living = [living_at(tree, step) for step in (0, 20_480)]
     walked = neutral_courses(tree, living, still, np.random.default_rng(2), 2000)
-    assert walked[:, 0].std() == pytest.approx(1 / np.sqrt(50), rel=0.1)  # founders, each with a gene of its own
+    assert walked[:, 0].std() == pytest.approx(1 / np.sqrt(50), rel=0.1)  # founders, each with its own gene
     assert walked[:, 1].std() > 1.5 * walked[:, 0].std()  # families were lost
 
 
 def test_neutral_genes_of_a_pedigree_are_called_held_as_often_as_promised(worlds: list[WorldRecord]) -> None:
-    """64 markers with Cauchy mutations: each in its own world, against walks of that world."""
+    """64 neutral genes with Cauchy mutations, each tested in its own world against walks of that world."""
     rng, p = np.random.default_rng(3), []
     for world in worlds:
         course = world_course(world, 1024.0, rng, walks=100)
@@ -48,7 +48,7 @@ def test_neutral_genes_of_a_pedigree_are_called_held_as_often_as_promised(worlds
     assert 0.35 < np.mean(p) < 0.65
 
 
-def test_the_topic_pools_worlds_and_leaves_out_torn_ones(worlds: list[WorldRecord], tmp_path: Path) -> None:
+def test_the_topic_pools_worlds_and_leaves_out_empty_ones(worlds: list[WorldRecord], tmp_path: Path) -> None:
     three = worlds[:3]
     pooled, by_world = reversion_topic(by_condition(three))
     assert pooled.rows["weight"].to_list() == list(three[0].weight_names)

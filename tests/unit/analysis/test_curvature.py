@@ -14,7 +14,7 @@ NAMES = ("w_normal", "w_action", "neutral_1")
 
 
 def cohort(rng: np.random.Generator, count: int, bend: float, *, heavy: bool) -> pl.DataFrame:
-    """Sibships of four with like weights; luck in children is exponential; fitness bends along the first weight."""
+    """Sibships of about four with similar weights; exponential luck; fitness that bends along the first weight."""
     family = rng.integers(0, count // 4, count)
     if heavy:
         z = rng.standard_t(2, (count // 4, 3))[family] + 0.3 * rng.standard_cauchy((count, 3))
@@ -30,13 +30,13 @@ def cohort(rng: np.random.Generator, count: int, bend: float, *, heavy: bool) ->
 
 
 def measured(bend: float, trials: int, *, heavy: bool) -> np.ndarray:
-    """The curvature of each weight, (trials, weights)."""
+    """The curvature of each weight, shape (trials, weights)."""
     rng = np.random.default_rng(1)
     found = [curvature(cohort(rng, 500, bend, heavy=heavy), NAMES, 10**6)[:3] for _ in range(trials)]
     return np.array([[row["curvature"] for row in rows] for rows in found])
 
 
-def test_it_is_the_coefficient_of_a_regression() -> None:
+def test_the_curvature_is_a_regression_coefficient() -> None:
     rng = np.random.default_rng(2)
     agents = cohort(rng, 190, 0.0, heavy=False)  # one stratum
     z = agents.select(NAMES).to_numpy().astype(np.float64)
@@ -64,7 +64,7 @@ def test_stabilizing_and_disruptive_selection_are_found(bend: float, heavy: bool
     np.testing.assert_allclose(mean[1:], 0.0, atol=0.03)
 
 
-def test_few_agents_and_weights_that_do_not_vary_give_nothing() -> None:
+def test_few_agents_and_constant_weights_have_no_curvature() -> None:
     rng = np.random.default_rng(3)
     assert np.isnan([row["curvature"] for row in curvature(cohort(rng, 40, 0.0, heavy=False), NAMES, 10**6)]).all()
     still = cohort(rng, 300, 0.0, heavy=False).with_columns(w_action=pl.lit(0.5, pl.Float32))
@@ -73,7 +73,7 @@ def test_few_agents_and_weights_that_do_not_vary_give_nothing() -> None:
     assert np.isfinite([rows[0]["curvature"], rows[2]["curvature"]]).all()
 
 
-def test_the_topic_shows_what_exceeds_neutral_genes(tmp_path) -> None:
+def test_the_topic_shows_the_excess_over_neutral_genes(tmp_path) -> None:
     options = {"worlds": 3, "intervals": 60, "snapshot": False, "neutral_count": 3}
     worlds = read_worlds([open_run(write_run(tmp_path / "run", **options))])
     summary, by_window = curvature_topic(by_condition(worlds))

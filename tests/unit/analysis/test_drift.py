@@ -35,14 +35,14 @@ def quartile(values: np.ndarray) -> float:
 
 
 def test_walks_add_up_as_cauchy_numbers_do() -> None:
-    """A line of g births is Cauchy of scale g·0.1; the mean of independent lines keeps the scale of one."""
+    """A line of g births is Cauchy with scale g·0.1; the mean of independent lines has the scale of one line."""
     rng = np.random.default_rng(1)
     line = chain([-1, 0, 1, 2, 3, 4])
     assert quartile(neutral_means(line, np.array([5]), LAW, rng, 20_000)) == pytest.approx(0.5, rel=0.05)
     star = chain([-1, 0, 0, 0, 0])
     leaves = np.array([1, 2, 3, 4])
     assert quartile(neutral_means(star, leaves, LAW, rng, 20_000)) == pytest.approx(0.1, rel=0.05)
-    # A shared mutation and one's own: (2·X + Y + Z)/2 has scale (2 + 1 + 1)/2.
+    # A shared mutation and each child's own: (2·X + Y + Z)/2 has scale (2 + 1 + 1)/2.
     fork = chain([-1, 0, 1, 1])
     assert quartile(neutral_means(fork, np.array([2, 3]), LAW, rng, 20_000)) == pytest.approx(0.2, rel=0.05)
 
@@ -59,13 +59,13 @@ def test_founders_and_the_limit() -> None:
 
 
 def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
-    """Two births in a row, each the first of its window: the same noise twice, so that the scale doubles."""
+    """Two births in a row, each the first of its window, get the same noise, so the scale doubles."""
     rng = np.random.default_rng(3)
     frozen = dataclasses.replace(LAW, tabulated=True, late=True)
     tree = chain([-1, 0, 1], [0, 5, 15])
     values = neutral_means(tree, np.array([1, 2]), frozen, rng, 20_000)
     assert quartile(values) == pytest.approx(0.15, rel=0.05)  # (X + 2·X)/2
-    # Steps far beyond the limit leave signs: equal noise gives equal ones, that of another number often not.
+    # Steps far beyond the limit leave only signs: equal noise gives equal signs, noise of another number often not.
     signs = dataclasses.replace(frozen, scale=1e6, limit=1.0)
     for second_birth, equal in ((15, 1.0), (6, 0.5)):
         values = neutral_means(chain([-1, 0, 1], [0, 5, second_birth]), np.array([1, 2]), signs, rng, 4000)
@@ -75,16 +75,16 @@ def test_frozen_noise_is_shared_by_births_of_equal_number() -> None:
 
 
 @pytest.mark.long
-def test_neutral_markers_are_called_selected_as_often_as_promised(tmp_path: Path) -> None:
-    """Type I error on whole records: 6 markers in each of 60 worlds of no selection."""
+def test_neutral_genes_are_called_selected_as_often_as_promised(tmp_path: Path) -> None:
+    """Type I error on whole records: 6 neutral genes in each of 60 worlds without selection."""
     rng = np.random.default_rng(4)
     options = {"intervals": 30, "worlds": 60, "neutral_count": 6, "selection": 0.0, "capacity": 60}
     worlds = read_worlds([open_run(write_run(tmp_path / "run", snapshot=False, **options))])
     scores = np.array([[r.score for r in world_drift(world, rng, 500)] for world in worlds])
     p = 2 * stats.norm.sf(np.abs(scores))
-    # 480 p-values, not independent within a world: bounds of 2.5 % to 8.5 % are some 3 standard errors.
+    # 480 p-values, not independent within a world: bounds of 2.5 % to 8.5 % are about 3 standard errors.
     assert 0.025 < np.mean(p < 0.05) < 0.085
-    # Rows of the genome share the pedigree alone, so a column is an independent uniform sample.
+    # Genes of one world share its pedigree, but a column has one gene per world, so it is an independent sample.
     assert min(stats.kstest(stats.norm.cdf(column), "uniform").pvalue for column in scores.T) > 1e-3
 
 
@@ -125,13 +125,13 @@ def test_two_modes_are_a_distance_without_a_direction() -> None:
 
 
 def scores(values: np.ndarray) -> list[list[WorldDrift]]:
-    """One weight and no neutral gene in as many worlds as there are values."""
+    """One weight and no neutral gene, in one world per value."""
     return [[WorldDrift("w", 0.0, 0.0, -2, 0, 2, float(v), 1.0)] for v in values]
 
 
 @pytest.mark.parametrize(("scale", "least", "most"), [(1.0, 0.02, 0.08), (0.4, 0.95, 1.0)])
 def test_a_weight_that_is_held_is_found_in_the_lower_tail(scale: float, least: float, most: float) -> None:
-    """Ten worlds: 5 % under drift, and nearly always where scores stray 0.4 times as far."""
+    """With ten worlds: in 5 % of cases under drift, and nearly always if scores spread 0.4 times as far."""
     rng = np.random.default_rng(6)
     p = []
     for _ in range(500):
@@ -141,7 +141,7 @@ def test_a_weight_that_is_held_is_found_in_the_lower_tail(scale: float, least: f
     assert least <= np.mean(np.array(p) <= 0.05) <= most
 
 
-def test_the_interval_by_drifts_own_spread_agrees_with_its_p() -> None:
+def test_the_interval_from_the_spread_of_drift_agrees_with_p() -> None:
     rng = np.random.default_rng(7)
     for shift in (0.0, 0.5, 1.0):
         direction, distance, held = drift_tests(scores(rng.normal(shift, 1, 8)), ("w",), (), {}, rng)

@@ -24,7 +24,7 @@ from hedon.analysis.world.record import read_worlds
 from hedon.record.reader import open_run
 from hedon.statistic.price import price
 
-# Two founders; 0 has 2, 2 has 3 and 4, 3 has 5; 1 has 6, who dies. 4 and 5 live.
+# Two founders; 0 has 2, 2 has 3 and 4, 3 has 5; 1 has 6, which dies. 4 and 5 are alive.
 AGENTS = pl.DataFrame(
     {
         "agent_id": [10, 11, 12, 13, 14, 15, 16],
@@ -47,13 +47,13 @@ def test_the_small_pedigree() -> None:
     assert np.flatnonzero(tree.alive).tolist() == [4, 5]
     assert common_ancestor(tree, np.array([4, 5])) == 2
     assert common_ancestor(tree, np.array([3, 5])) == 3  # one of them is the ancestor of the other
-    assert common_ancestor(tree, np.array([5, 6])) is None  # of two founders
+    assert common_ancestor(tree, np.array([5, 6])) is None  # from two founders
     assert common_ancestor(tree, np.array([], np.int64)) is None
     assert families(tree, np.array([0, 39, 79, 80, 1000])).tolist() == [2, 2, 2, 1, 1]
     assert living_at(tree, 25).tolist() == [0, 1, 2, 3, 4, 5]
 
 
-def test_random_pedigrees_agree_with_climbing_one_by_one() -> None:
+def test_random_pedigrees_agree_with_tracing_each_line() -> None:
     rng = np.random.default_rng(1)
     for trial in range(40):
         tree = random_tree(rng, 120, 1 + trial % 4)
@@ -87,7 +87,7 @@ def test_generation_time_by_both_measures() -> None:
     assert (nobody["parent_age"], nobody["reached"], nobody["line_time"]) == (None, 0, None)
 
 
-def test_the_age_of_parents_is_that_of_both() -> None:
+def test_the_age_of_parents_includes_both_parents() -> None:
     mates = pl.Series("mate_id", [None, None, 11, 11, 11, 14, None], pl.Int64)
     found = generation_time(AGENTS.with_columns(mates), 100)
     ages = [5, 5, 15, 15, 30, 5, 10, 20, 5]
@@ -99,7 +99,7 @@ def test_price_on_the_small_pedigree() -> None:
     parent, weight = genealogy(AGENTS).parent, AGENTS["w_normal"].to_numpy()
     cohort = np.array([True, True, True, False, False, False, False])
     terms = price(weight, parent, cohort)
-    # Parents 1, 2, 1.5 have 1, 1, 2 children, with weights 1.5; 2; 1.25 and 2.5.
+    # Parents of weights 1, 2 and 1.5 have 1, 1 and 2 children, of weights 1.5; 2; 1.25 and 2.5.
     assert (terms["parents"], terms["offspring"]) == (3, 4)
     assert terms["change"] == pytest.approx(7.25 / 4 - 1.5)
     assert terms["selection"] == pytest.approx(np.cov([1, 1, 2], [1, 2, 1.5], ddof=0)[0, 1] / (4 / 3))
@@ -126,14 +126,14 @@ def test_births_are_numbered_within_their_window() -> None:
     #            founders   window 0 (steps 1 to 10)  window 1
     birth = np.array([0, 0, 1, 9, 10, 11, 11, 20])
     tree = Genealogy(np.array([-1, -1, 0, 1, 1, 0, 2, 2]), birth, birth + 5, 0)
-    # Three births in both windows. With the births of the window before, those of the first window count as after none.
+    # Three births in both windows. If the previous window's births count, those of the first window follow none.
     assert birth_number(tree, 10, late=True).tolist() == [0, 0, 0, 1, 2, 0, 1, 2]
     assert birth_number(tree, 10, late=False).tolist() == [0, 0, 0, 1, 2, 3, 4, 5]
-    # Windows of 11 steps have five births and one.
+    # Two windows of 11 steps have five births and one.
     assert birth_number(tree, 11, late=True).tolist() == [0, 0, 1, 2, 3, 4, 5, 0]
 
 
-def test_who_died_before_its_window_ended_never_had_a_genome_of_its_own() -> None:
+def test_an_agent_that_died_before_its_window_ended_never_had_its_own_genome() -> None:
     law = MutationLaw(mean=0.0, sd=0.0, scale=0.1, limit=10.0, tabulated=False, window=10, late=True)
     #                 founder  lives on  dies first  its child  too late to know
     tree = Genealogy(np.array([-1, 0, 0, 2, 1]), np.array([0, 3, 3, 5, 21]), np.array([ALIVE, 30, 10, ALIVE, ALIVE]), 0)

@@ -32,7 +32,7 @@ def test_the_nearest_of_others() -> None:
     assert nearest(np.array([[0.0, 0.0], [9.0, 0.0]]), np.array([[3.0, 4.0], [9.0, 2.0]])).tolist() == [5.0, 2.0]
 
 
-def test_company_is_that_of_each_frame_and_chance_is_what_even_places_give(world: WorldRecord) -> None:
+def test_company_is_measured_per_frame_and_chance_is_from_uniform_places(world: WorldRecord) -> None:
     side, height = world.config.arena.width, world.config.arena.height
     agents = [(side / 2 + 10 * i, side / 2) for i in range(20)]
     frames = pl.concat(
@@ -47,7 +47,7 @@ def test_company_is_that_of_each_frame_and_chance_is_what_even_places_give(world
     grid = np.stack(np.meshgrid((np.arange(200) + 0.5) * side / 200, (np.arange(200) + 0.5) * height / 200), -1)
     even = np.hypot(grid[..., 0] - (side / 2 - 30), grid[..., 1] - side / 2).mean()
     assert found["distance_chance"].to_numpy()[:200].mean() == pytest.approx(even, rel=0.02)
-    # With 20 agents in such an arena a neighbor within 30 u is rare: 19 π 30² / area of them; groups of three add some.
+    # With 20 agents in such an arena, neighbors within 30 u are rare: 19 π 30² / area; groups of three add a few.
     rare = 19 * np.pi * 900 / (side * height)
     assert 1 + 0.85 * rare < found["group_chance"].to_numpy().mean() < 1 + rare + 2 * rare**2
 

@@ -17,7 +17,7 @@ def weights(count: int) -> pl.DataFrame:
 
 
 def test_a_line_is_carried_until_its_last_heir_is_born() -> None:
-    # 0 has 1 (at 10) and 2 (at 30), who live; 3, born at 20, leaves nobody.
+    # 0 has 1 (at 10) and 2 (at 30), which are alive; 3, born at 20, leaves no descendants.
     tree = Genealogy(np.array([-1, 0, 0, 0]), np.array([0, 10, 30, 20]), np.array([90, ALIVE, ALIVE, 40]), 0)
     found = lines_through_time(tree, weights(4), ["w_normal"], np.array([0, 10, 20, 30, 50, 90]))
     assert found["lines"].to_list() == [1, 2, 2, 2, 2, 2]
@@ -34,7 +34,7 @@ def test_lines_agree_with_a_count_one_by_one() -> None:
         steps = np.arange(0, 140, 7)
         found = lines_through_time(tree, weights(100), ["w_normal"], steps)
         for i, step in enumerate(steps):
-            # Down each path, who carries the line at this step: the last that was born by then.
+            # On each path, the line is carried at this step by the last agent born by then.
             carriers = {
                 next(a for a in path if tree.birth[a] <= step) for path in paths if tree.birth[path[-1]] <= step
             }

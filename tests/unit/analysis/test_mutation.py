@@ -1,4 +1,4 @@
-"""Mutation as a treatment: a known effect is found whatever parents do, and none where there is none."""
+"""Mutation as a treatment: a known effect is found whatever the parents do, and none if there is none."""
 
 from pathlib import Path
 
@@ -35,8 +35,8 @@ def test_a_known_effect_is_found_with_an_interval_that_covers() -> None:
     assert len(found) == 2 * 2 * 3
 
 
-def test_what_parents_do_is_no_effect() -> None:
-    # Parents with large weights have many rich children, whose mutations are theirs alone.
+def test_differences_between_parents_are_no_effect() -> None:
+    # The children of some parents fare far better, whatever their mutations.
     rng = np.random.default_rng(2)
     data = births(rng, 0.0, 5000)
     data.outcome[:] *= np.exp(rng.normal(0, 2, 5000))[data.parent][:, None]
@@ -46,7 +46,7 @@ def test_what_parents_do_is_no_effect() -> None:
         assert each["p"] > 0.001
 
 
-def test_mutations_that_do_nothing_are_found_once_in_twenty() -> None:
+def test_mutations_without_effect_are_found_once_in_twenty() -> None:
     trials, found = 200, {"clipped": 0, "rank": 0}
     for trial in range(trials):
         rng = np.random.default_rng([9, trial])
@@ -76,7 +76,7 @@ def test_births_are_children_with_siblings_of_recorded_parents(tmp_path: Path) -
     assert tables["mutation"].shown
 
 
-def test_too_few_families_tell_nothing() -> None:
+def test_too_few_families_give_no_answer() -> None:
     few = births(np.random.default_rng(1), parents=20)
     assert mutation_effects(few, NAMES, np.random.default_rng(1)) == []
     alone = Births(few.change, few.outcome, np.arange(len(few.parent)))

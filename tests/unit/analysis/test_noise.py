@@ -1,4 +1,4 @@
-"""The table of tabulated noise and what it predicts, on records whose table is known."""
+"""The table behind tabulated noise and what it predicts, on records whose table is known."""
 
 import dataclasses
 
@@ -13,7 +13,7 @@ from hedon_studies.kanagawa_doya_2024.analysis.noise import mutations, noise_tab
 
 WINDOW = 1024
 GENE = "neutral_1"
-PER_WINDOW = 24  # births at most
+PER_WINDOW = 24  # the most births in a window
 
 
 def make_world(
@@ -25,8 +25,8 @@ def make_world(
     limit: float = 10.0,
     steady: bool = False,
 ) -> WorldRecord:
-    """A world of 40 agents without selection; noise from the table, by (births in the window, index of the birth), or
-    independent where there is none. Where it is steady all windows have almost equally many births, so the table
+    """A world of 40 agents without selection. Its noise is from the table, by (births in the window, index of the
+    birth), or independent if there is no table. If steady, all windows have almost equally many births, so the table
     is small."""
     config = load_config("baseline", "released" if table is not None else "corrected")
     config = config.with_("genome.weight_limit", limit)
@@ -62,7 +62,7 @@ def make_table(rng: np.random.Generator) -> np.ndarray:
 
 
 def entries(world: WorldRecord) -> tuple[np.ndarray, np.ndarray]:
-    """The places in the table that births of a world used: births in the window and index, in order."""
+    """The table entries that the births of a world used: births in the window and index, in order."""
     birth = world.agents.filter(pl.col("parent_id").is_not_null())["birth_step"].to_numpy()
     counts = np.unique(np.bincount((birth - 1) // WINDOW))
     return np.repeat(counts, counts), np.concatenate([np.arange(count) for count in counts])
@@ -77,14 +77,14 @@ def test_the_table_is_read_off_the_records() -> None:
     assert found.is_one
     assert 0 < found.disagreement < 2e-6
     assert not found.bound.any()
-    # Every birth of the windows with equally many births has the same weight.
+    # All entries for windows with the same number of births are based on equally many births.
     births, index = entries(world)
     assert [len(set(found.births[births == count])) for count in np.unique(births)] == [1] * len(np.unique(births))
     assert found.births[index == 0].sum() == 120
 
 
 def test_clipped_children_do_not_hide_the_table() -> None:
-    """Weights that are pushed to a narrow limit: clipped births show less than the table, and are not used."""
+    """Weights are pushed to a narrow limit: clipped births show less than the table and are not used."""
     rng = np.random.default_rng(2)
     table = make_table(rng)
     table[:, 3], table[:, 5] = 0.4, -2.5  # the latter is always clipped
@@ -101,7 +101,7 @@ def test_clipped_children_do_not_hide_the_table() -> None:
     assert (found.value[~free] < -0.5).all()  # bounds, of the right sign
 
 
-def test_independent_noise_is_no_table() -> None:
+def test_independent_noise_has_no_table() -> None:
     rng = np.random.default_rng(3)
     found = noise_table(mutations(make_world(None, rng), GENE))
     assert not found.is_one
@@ -122,7 +122,7 @@ def test_births_after_a_gap_have_no_number() -> None:
 
 def test_frozen_noise_predicts_where_a_gene_without_selection_drifts() -> None:
     rng = np.random.default_rng(5)
-    # Rows alike, so that both halves of a run hold much of the same noise.
+    # All rows are alike, so both halves of a run share much of their noise.
     rows = [np.clip(make_table(rng)[0], -0.3, 0.3) for _ in range(10)]
     worlds = [make_world(np.tile(row, (PER_WINDOW + 1, 1)), rng, windows=600, seed=i) for i, row in enumerate(rows)]
     drifts = [gene_drift(world, GENE, rng) for world in worlds]
@@ -147,7 +147,7 @@ def test_lines_stop_at_the_limit() -> None:
     assert found["generations"] > 20  # enough for twice the limit
     assert found["line_mean"] == found["line_high"] == 1.0
     assert found["end"] == pytest.approx(1.0, abs=0.6)
-    assert found["displacement"] < 0.05 < found["bias"]  # what the limit hides from the drift per generation
+    assert found["displacement"] < 0.05 < found["bias"]  # the limit hides the bias from the drift per generation
 
 
 def test_independent_noise_predicts_nothing() -> None:

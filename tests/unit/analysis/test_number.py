@@ -76,10 +76,10 @@ def test_food_by_both_rules() -> None:
     assert food_per_agent_step(POPULATION, ("poor",)) == pytest.approx(4 / 800)
 
 
-def test_food_where_nobody_died_or_lived() -> None:
+def test_food_if_no_agent_died_or_lived() -> None:
     assert food_per_step(AGENTS.tail(1), ("normal",)) is None
     assert food_per_agent_step(POPULATION.head(0), ("normal",)) is None
-    same_step = AGENTS.head(2).with_columns(death_step=pl.Series([0, 300]))  # a life of no step has no rate
+    same_step = AGENTS.head(2).with_columns(death_step=pl.Series([0, 300]))  # a life of zero steps has no rate
     assert food_per_step(same_step, ("normal",)) == 0
 
 
@@ -87,7 +87,7 @@ def test_weights_of_the_last_born() -> None:
     assert last_agents(AGENTS, 2)["agent_id"].to_list() == [2, 3]
 
 
-def test_the_living_at_the_end_or_when_somebody_lived_last() -> None:
+def test_the_living_at_the_end_or_at_the_last_step_with_any() -> None:
     living = AGENTS.with_columns(death_step=pl.Series([100, 300, None, None], dtype=pl.Int64))
     going = POPULATION.with_columns(alive=pl.Series([2, 4, 2, 2]))
     assert last_living(living, going)["agent_id"].to_list() == [2, 3]
@@ -153,7 +153,7 @@ def test_history_in_two_intervals() -> None:
     assert history(POPULATION.head(0), ("normal",)).is_empty()
 
 
-def test_a_part_of_a_window_makes_no_spike() -> None:
+def test_a_partial_window_makes_no_spike() -> None:
     whole = {"births": 20, "deaths": 10, "eaten_normal": 100, "agent_steps": 100 * 1024, "steps": 1024, "alive": 100}
     part = {"births": 2, "deaths": 0, "eaten_normal": 4, "agent_steps": 100 * 64, "steps": 64, "alive": 102}
     means = {"energy_mean": 1.0, "generation_mean": 2.0, "births_failed_full": 0, "births_failed_space": 0}
@@ -172,7 +172,7 @@ def test_a_part_of_a_window_makes_no_spike() -> None:
     assert found.filter(pl.col("world") == 1)["births"].to_list() == [31.25]
 
 
-def test_who_lives_is_censored_at_the_end() -> None:
+def test_living_agents_are_censored_at_the_end() -> None:
     agents = pl.DataFrame({"birth_step": [0, 10, 40], "death_step": [30, None, None]})
     duration, died = durations(agents, 50)
     assert duration.tolist() == [30, 40, 10]

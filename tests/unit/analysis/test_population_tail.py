@@ -16,6 +16,6 @@ def test_steps_after_the_last_agent_count_as_empty():
     assert alive_after_extinction(_population([100, 200], alive=10), 1000) == 0.0
 
 
-def test_a_branch_that_begins_within_the_tenth_is_averaged_from_its_beginning():
+def test_a_branch_that_starts_within_the_last_tenth_is_averaged_from_its_start():
     assert alive_after_extinction(_population([1000], alive=10), 1000) == pytest.approx(10.0)
     assert alive_after_extinction(_population([9700, 9800], alive=10), 10_000) == pytest.approx(10.0 * 200 / 400)

@@ -11,7 +11,7 @@ from hedon.record.reader import open_run
 
 BASELINE = load_config("baseline")
 
-# One window of 1024 steps with 150 alive and clear of all rules but one: see each case.
+# One window of 1024 steps with 150 alive, to which no rule applies; each case changes it.
 ROW = {
     "step": 1024,
     "steps": 1024,
@@ -62,7 +62,7 @@ def test_poison_is_no_supply() -> None:
     assert interval_regime(pl.DataFrame([row]), config, "agent")["uptake"] == pytest.approx(100 / 204.8)
 
 
-def test_what_is_not_defined_names_nothing() -> None:
+def test_undefined_rates_name_no_regime() -> None:
     nothing = {"births": 0, "deaths": 0, "energy_basic": 0.0, "energy_action": 0.0}
     config = load_config("baseline", overrides=["food.normal.growth_rate=0.0"])
     found = interval_regime(pl.DataFrame([ROW | nothing]), config, "agent")
@@ -82,7 +82,7 @@ def test_over_time(tmp_path: Path) -> None:
     assert len(regimes(population.head(3), BASELINE)) == 3
 
 
-def test_a_part_of_a_window_is_no_interval_of_its_own() -> None:
+def test_a_partial_window_is_not_a_separate_interval() -> None:
     part = {"step": 3 * 1024 + 16, "steps": 16, "agent_steps": 150 * 16, "births": 0, "deaths": 0, "eaten_normal": 3}
     rows = [ROW | {"step": 1024 * i} for i in (1, 2, 3)]
     found = regimes(pl.DataFrame([*rows, ROW | part]), BASELINE)

@@ -9,15 +9,15 @@ NAMES = ("w_normal", "w_action", "neutral_1")
 
 
 def cohort(z: np.ndarray, children: np.ndarray, *, parent: np.ndarray | None = None) -> pl.DataFrame:
-    """Agents with given weights and children, all of them dead, in the order of birth."""
+    """Agents with given weights and children, all of them dead, in order of birth."""
     n = len(z)
     table = {"agent_id": np.arange(n), "birth_step": np.arange(n), "death_step": np.arange(n) + 100}
     table |= {"parent_id": np.arange(n) if parent is None else parent, "children": children}
     return pl.DataFrame(table | {name: z[:, i].astype(np.float32) for i, name in enumerate(NAMES)})
 
 
-def test_the_truth_of_a_log_linear_fitness_is_found() -> None:
-    """W Poisson with mean exp(b·z) and normal z: the gradient is b, the differential b·σ² (Lande & Arnold)."""
+def test_the_true_gradient_of_a_log_linear_fitness_is_found() -> None:
+    """With W Poisson of mean exp(b·z) and z normal, the gradient is b and the differential b·σ² (Lande & Arnold)."""
     rng = np.random.default_rng(2)
     b, trials, slopes = 0.3, 120, []
     for _ in range(trials):
@@ -30,7 +30,7 @@ def test_the_truth_of_a_log_linear_fitness_is_found() -> None:
 
 def test_both_measures_of_fitness_are_regressed() -> None:
     rng = np.random.default_rng(8)
-    z = rng.normal(size=(300, 3)).astype(np.float32).astype(np.float64)  # as they are recorded
+    z = rng.normal(size=(300, 3)).astype(np.float32).astype(np.float64)  # as recorded
     agents = cohort(z, rng.poisson(1.0, 300))
     lives = np.round(1000 * np.exp(0.3 * z[:, 1])).astype(int)
     agents = agents.with_columns(death_step=pl.col("birth_step") + lives)
@@ -62,7 +62,7 @@ def test_a_common_drift_of_weights_and_fitness_is_no_selection() -> None:
     assert row["sd"] == pytest.approx(1.0, abs=0.03)  # among contemporaries, without the drift
 
 
-def test_a_weight_that_does_not_vary_has_no_gradient_and_harms_no_other() -> None:
+def test_a_weight_that_does_not_vary_has_no_gradient_and_affects_no_other() -> None:
     rng = np.random.default_rng(5)
     z = rng.normal(size=(300, 3))
     z[:, 1] = 0.1

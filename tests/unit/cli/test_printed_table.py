@@ -61,7 +61,7 @@ def test_settings_that_are_numbers_tell_rows_apart_in_every_part() -> None:
 
 
 @pytest.mark.parametrize("last", ["x", "y"], ids=["not told apart", "told apart"])
-def test_texts_are_repeated_however_many_they_are(last: str) -> None:
+def test_texts_are_repeated_however_many_there_are(last: str) -> None:
     rows = [["a", "b", "x", "1" * 30, "2" * 30], ["a", "b", last, "3" * 30, "4" * 30]]
     lines = printed(50, PrintedTable(["one", "two", "three", "c", "d"], rows, text=(0, 1, 2)))
     heads = [line.split()[:3] for line in lines if "two" in line]
@@ -84,17 +84,17 @@ def test_the_columns_that_tell_rows_apart_are_repeated() -> None:
     assert len([line for line in lines if line.split()[:2] == ["children", "w_b"]]) == 2
 
 
-def test_a_table_that_fits_is_one_as_narrow_as_it_can_be() -> None:
+def test_a_table_that_fits_is_whole_and_as_narrow_as_possible() -> None:
     lines = printed(120, PrintedTable(("a", "b"), [("x", "1"), ("together",)], total=True))
     assert [line.rstrip() for line in lines if line.strip(" ─")] == [" a          b", " x          1", " together"]
-    assert len([line for line in lines if "─" in line or not line.strip()]) == 4  # above, below the head, total, below
+    assert len([line for line in lines if "─" in line or not line.strip()]) == 4  # top, below the head, total, bottom
 
 
 def test_a_table_without_rows_has_its_head() -> None:
     assert "seed" in words(printed(60, PrintedTable(("seed", "alive"), [])))
 
 
-def test_the_display_of_a_run_fits_and_tells_who_died_out() -> None:
+def test_the_display_of_a_run_fits_and_names_extinct_worlds() -> None:
     row = dict.fromkeys(("alive", "births", "deaths"), 12) | {"energy_mean": 1.5, "generation_mean": 2.0}
     row |= {"eaten_normal": 3} | dict.fromkeys(("w_normal_mean", "w_action_mean", "neutral_1_mean"), 0.25)
     console = Console(width=60, file=io.StringIO(), force_terminal=True, color_system=None)

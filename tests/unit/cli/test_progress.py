@@ -1,4 +1,4 @@
-"""What a person sees while a run goes on."""
+"""What the user sees during a run."""
 
 import io
 
@@ -23,8 +23,8 @@ def shown(moments: list[tuple[float, int]]) -> list[str]:
     return stream.getvalue().splitlines()
 
 
-def test_the_speed_is_over_a_whole_window_however_long_its_learning_takes():
-    """A window is stepped through in 5 s, and its learning takes 60 s, in which no step is made."""
+def test_the_speed_is_averaged_over_a_whole_window_however_long_its_learning_takes():
+    """The steps of a window take 5 s; its learning takes 60 s, during which no step is made."""
     moments = []
     for window in range(4):
         begun = window * 65.0
@@ -39,13 +39,13 @@ def test_the_speed_is_over_a_whole_window_however_long_its_learning_takes():
     assert not any("0 steps/s" in line.split()[4] for line in later)
 
 
-def test_the_speed_follows_the_last_seconds_where_windows_are_short():
+def test_the_speed_follows_the_last_seconds_if_windows_are_short():
     moments = [(float(i), i * WINDOW) for i in range(1, 30)] + [(29 + i / 10, (29 + i) * WINDOW) for i in range(1, 72)]
     speed = float(shown(moments)[-1].split(" steps/s")[0].split()[-1].replace(",", ""))
     assert speed > 3000
 
 
-def test_a_line_within_a_window_says_of_which_step_its_numbers_are():
+def test_a_line_within_a_window_gives_the_step_of_its_numbers():
     within, end = shown([(2.0, 1792), (14.0, 2000)])
     assert "step 1,792 of 100,000" in within
     assert "seed 1 at step 1,000: 3 alive" in within
@@ -76,8 +76,8 @@ def test_a_world_without_a_new_window_is_not_printed_again():
     assert worlds == ["  seed 1 at step 1", "  seed 2: extinct at step 700", "  seed 1: 4 alive"]
 
 
-def test_a_species_that_is_gone_has_no_energy():
-    """The world lives on: its other species has a line of its own."""
+def test_an_extinct_species_has_no_energy():
+    """The world continues: its other species has its own line."""
     nan = float("nan")
     gone = ROW | {"alive": 0, "energy_mean": nan, "generation_mean": nan, "w_normal_mean": nan, "w_action_mean": nan}
     here = ROW | {"generation_mean": 1.5}

@@ -1,4 +1,4 @@
-"""Videos are read back: as many pictures as asked for, of the right size, with agents where the frames have them."""
+"""Videos, read back: they have the right number of pictures, the right size, and agents where the frames have them."""
 
 import subprocess
 from dataclasses import replace
@@ -21,7 +21,7 @@ imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="needs ffmpeg: uv 
 
 
 def pixel(film: Film, x: float, y: float) -> tuple[int, int]:
-    """The column and the row of a place in the world [u], in the picture drawn last."""
+    """The column and row of a point in the world [u], in the last picture drawn."""
     column, above = film._axes.transData.transform((x, y))
     return int(column), film.height - 1 - int(above)
 
@@ -62,13 +62,13 @@ def test_a_video_has_the_pictures_and_agents_of_the_frames(folder, tmp_path, end
         drawn = np.asarray(film.draw(moment))[:, :, :3].astype(int)
         for x, y in zip(moment.x, moment.y, strict=True):
             column, row = pixel(film, x, y)
-            # Half-way to the rim, away from the line of the heading; codecs change colors a little.
+            # Well inside the body; codecs change colors slightly.
             near = np.s_[row - 3 : row + 4, column - 3 : column + 4]
             assert np.abs(picture[near].astype(int) - drawn[near]).mean() < bound
             assert picture[near].mean(axis=(0, 1))[0] < 235  # the floor has 251
 
 
-def test_a_moment_between_two_frames_lies_between_them(folder):
+def test_a_moment_between_two_frames_is_interpolated(folder):
     rows = open_run(folder).frames().collect()
     at = {step: rows.filter((pl.col("step") == step) & pl.col("id").is_not_null()).sort("id") for step in (64, 128)}
     (moment,) = open_footage(folder).moments(80, 80, 1)
@@ -101,7 +101,7 @@ def test_a_followed_agent_stays_ringed_and_in_sight(folder):
     assert (shown.first, shown.last) == footage.lifetime(agent)
 
 
-def test_a_take_must_have_been_recorded(folder):
+def test_a_video_must_be_of_recorded_frames(folder):
     footage = open_footage(folder)
     with pytest.raises(VideoError, match="--from 32: the frames reach from step 64 to 256"):
         choose_range(footage, 32, None, 8)
@@ -115,7 +115,7 @@ def test_a_take_must_have_been_recorded(folder):
         open_footage(folder, 2)
 
 
-def test_a_file_is_not_replaced_and_one_that_fails_leaves_nothing(folder, tmp_path, monkeypatch):
+def test_a_file_is_not_replaced_and_a_failed_video_leaves_nothing(folder, tmp_path, monkeypatch):
     (tmp_path / "there.mp4").write_text("mine")
     for name, words in (("there.mp4", "is there already"), ("a.avi", ".mp4 or .gif"), ("no/a.mp4", "no folder")):
         error = command(folder, tmp_path / name).exception
@@ -129,7 +129,7 @@ def test_a_file_is_not_replaced_and_one_that_fails_leaves_nothing(folder, tmp_pa
     assert [path.name for path in tmp_path.iterdir()] == ["there.mp4"]
 
 
-def test_the_program_ends_with_its_video(tmp_path):
+def test_ffmpeg_exits_with_its_video(tmp_path):
     with Encoder(tmp_path / "a.gif", 32, 32, 25) as encoder:
         encoder.add(memoryview(bytes(32 * 32 * 4)))
         program = encoder._program
