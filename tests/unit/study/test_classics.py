@@ -1,4 +1,4 @@
-"""Studies of the classics: their rule answers as it is written, and each runs from its settings to its page."""
+"""Studies of classic questions: their decision rule works as written, and each runs from its settings to its page."""
 
 import json
 from pathlib import Path
@@ -20,7 +20,7 @@ def answers(*tests) -> list[str]:
     return verdict_table("made_up", tests).rows["answer"].to_list()
 
 
-def test_a_sure_effect_is_yes_on_its_side_and_no_on_the_other() -> None:
+def test_a_clear_effect_is_yes_on_one_side_and_no_on_the_other() -> None:
     rng = np.random.default_rng(1)
     values = rng.normal(1.0, 1.0, WORLDS)
     both = [mean_test("a", values, WORLDS, 0, above=above) for above in (True, False)]
@@ -32,7 +32,7 @@ def test_a_sure_effect_is_yes_on_its_side_and_no_on_the_other() -> None:
     assert slopes[0].low < -2.0 < slopes[0].high < 0
 
 
-def test_few_worlds_and_chance_leave_it_open() -> None:
+def test_few_worlds_and_chance_leave_the_answer_open() -> None:
     rng = np.random.default_rng(2)
     few = mean_test("few", rng.normal(5.0, 1.0, WORLDS - 1), WORLDS - 1, 0, above=True)
     none = mean_test("none", rng.normal(0.0, 1.0, 100), 100, 0, above=True)
@@ -41,13 +41,13 @@ def test_few_worlds_and_chance_leave_it_open() -> None:
     assert answers(few, none, empty) == [OPEN, OPEN, OPEN]
 
 
-def test_three_values_of_thirty_worlds_leave_it_open() -> None:
+def test_three_values_from_thirty_worlds_leave_the_answer_open() -> None:
     few = mean_test("few", [5.0, 5.1, 4.9], WORLDS, 27, above=True)
     assert few.p < 0.001
     assert answers(few) == [OPEN]
 
 
-def test_an_effect_that_two_worlds_cannot_tell_is_said_in_words() -> None:
+def test_an_effect_that_two_worlds_cannot_show_is_reported_in_words() -> None:
     assert slope_test("few", [1.0, 2.0], [0.1, 0.2], 0, above=True).said == "not known from 2 worlds"
     assert slope_test("one", [1.0], [0.1], 0, above=True).said == "not known from 1 world"
     known = slope_test("known", [1.0, 2.0, 3.0], [0.1, 0.2, 0.3], 0, above=True)
@@ -69,7 +69,7 @@ def test_tests_of_a_study_are_corrected_for_each_other() -> None:
 
 
 def rows(slope: float, difference: float) -> list[dict]:
-    """Worlds whose genes follow the lifetime as given; one of each ten died out."""
+    """Worlds whose genes follow the lifetime as given; one in six died out."""
     rng = np.random.default_rng(3)
     found = []
     for world, more in ((CONSTANT, 0.0), (CHANGING, difference)):
@@ -82,7 +82,7 @@ def rows(slope: float, difference: float) -> list[dict]:
     return found
 
 
-def test_lifespan_and_plasticity_finds_what_was_put_in() -> None:
+def test_lifespan_and_plasticity_recovers_known_effects() -> None:
     slope, difference = named_tests(rows(-0.2, 0.1))
     assert slope.low < -0.2 < slope.high
     assert difference.low < 0.1 < difference.high
@@ -100,7 +100,7 @@ def test_worlds_whose_agents_have_not_died_give_a_figure_without_points() -> Non
     assert svg_bytes(figure)
 
 
-def test_the_rest_of_the_tests_makes_the_rule_stricter() -> None:
+def test_more_tests_make_the_rule_stricter() -> None:
     found = count_test("clusters", 6, WORLDS, 0, 1 / 17, above=True)
     assert found.effect == pytest.approx(6 / WORLDS - 1 / 17)
     assert 0.005 < found.p < 0.02
@@ -110,7 +110,7 @@ def test_the_rest_of_the_tests_makes_the_rule_stricter() -> None:
 
 
 def shares(start: float, change: float, worlds: int = WORLDS) -> list[Lines]:
-    """Worlds of 100 agents whose share of foragers changes by a little more or less than some number."""
+    """Worlds of 100 agents whose share of foragers changes by slightly more or less than `change`."""
     found = []
     for seed in range(worlds):
         p = np.array([start, start + change + 0.01 * (-1) ** seed])
@@ -119,7 +119,7 @@ def shares(start: float, change: float, worlds: int = WORLDS) -> list[Lines]:
     return found
 
 
-def test_foragers_and_trackers_invade_each_other_if_both_grow_where_they_are_rare() -> None:
+def test_foragers_and_trackers_invade_each_other_if_both_grow_when_rare() -> None:
     found = invasion_tests({RARE: shares(RARE, 0.1), COMMON: shares(COMMON, -0.1)})
     assert [test.effect for test in found] == pytest.approx([0.1, -0.1])
     assert [test.extinct for test in found] == [1, 1]
@@ -128,7 +128,7 @@ def test_foragers_and_trackers_invade_each_other_if_both_grow_where_they_are_rar
     assert answers(*invasion_tests({COMMON: shares(COMMON, -0.1)})) == [OPEN, YES]
 
 
-def test_clusters_are_told_against_neutral_genes() -> None:
+def test_clusters_are_judged_against_neutral_genes() -> None:
     rows = [{"clusters": seed % 2 == 0, "died out": seed < 3, "neutral genes": 16} for seed in range(WORLDS)]
     assert answers(cluster_test(rows)) == [YES]
     assert cluster_test(rows).extinct == 3
@@ -144,7 +144,7 @@ def run_quick(folder: Path, name: str) -> dict[str, list[dict]]:
     tables = {key: table["rows"] for key, table in found["tables"].items()}
     answers = {row["answer"] for key, table in tables.items() if key.endswith("_verdict") for row in table}
     assert answers == {OPEN}
-    assert len(tables["world"]) == sum(len(item["worlds"]) for item in found["items"]), "one seed of each condition"
+    assert len(tables["world"]) == sum(len(item["worlds"]) for item in found["items"]), "one seed per condition"
     assert read_table(str(folder / "studies" / name)).factors == ("condition",)
     assert (folder / "studies" / name / "figures" / f"{name}.svg").stat().st_size > 10_000
     return tables

@@ -1,4 +1,4 @@
-"""Every rule of a claim fails a negative control: worlds in which what it claims is not so."""
+"""The rule of every claim fails a negative control: worlds in which the claim is false."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -24,13 +24,13 @@ WORLDS = 12
 Floats = NDArray[np.float64]
 
 DRIFT = np.random.default_rng(1).standard_cauchy(WORLDS)
-"""Weights that drift: half of them below 0."""
+"""Weights that drift, half of them below 0."""
 SCORES = np.random.default_rng(2).normal(size=WORLDS)
 """Scores of neutral genes against walks."""
 
 
 def starving(claim: Claim) -> Floats:
-    """Lifetimes of agents that never eat, by the preset of the claim."""
+    """Lifetimes of agents that never eat, under the preset of the claim."""
     config = load_config(claim.condition.preset)
     (species,) = config.species.values()
     return np.full(WORLDS, float(expected_lifetime(species.hazard, 0.0)))
@@ -63,7 +63,7 @@ CONTROLS: dict[str, tuple[Callable[[Claim], Floats], str]] = {
     "no fear of weak pitfalls": (lambda _: np.full(WORLDS, 1.0), FAILS),
     "lifespan": (lambda _: np.full(WORLDS, 1e5), FAILS),
 }
-"""By the name of a claim: figures of worlds in which it is wrong, and the verdict; empty if they only must not hold."""
+"""By the name of a claim: values in worlds where it is false, and the verdict; empty if it merely must not hold."""
 ALIKE = {
     "action weight lower": (SCORES, SCORES + 0.1),
     "longer lifetime": (np.full(WORLDS, 5095.0) + SCORES, np.full(WORLDS, 5095.0) - SCORES),
@@ -72,7 +72,7 @@ ALIKE = {
     "larger mouths, stronger fear": (SCORES, SCORES[::-1]),
     "less food, less liking of one's own kind": (SCORES, SCORES[::-1]),
 }
-"""By the name of an order: figures of two conditions that do not differ."""
+"""By the name of an order: values in two conditions that do not differ."""
 EVERY: Sequence[Claim] = [claim for claim in (*CLAIMS, *SEQUEL_CLAIMS) if claim.over_worlds != "extinction"]
 FOOD = [claim for claim in CLAIMS if claim.name == "food per step"]
 EXTINCTION = [claim for claim in (*CLAIMS, *SEQUEL_CLAIMS) if claim.over_worlds == "extinction"]
@@ -105,7 +105,7 @@ def test_worlds_without_food_count_against_a_rate_of_food(claim: Claim, worlds: 
 
 
 @pytest.mark.parametrize("claim", EXTINCTION, ids=lambda claim: claim.condition.label)
-def test_a_rule_of_extinction_fails_the_opposite(claim: Claim, worlds: list[WorldRecord]) -> None:
+def test_a_rule_of_extinction_fails_if_the_opposite_is_true(claim: Claim, worlds: list[WorldRecord]) -> None:
     most_die = claim.low >= 0.5
     asked = replace(claim, steps=1024)
     last = {"last_step": 1024, "extinct_step": None if most_die else 512}

@@ -1,4 +1,4 @@
-"""Studies of other packages: the one of the guide, installed in a folder of its own, and those that cannot be used."""
+"""Studies from other packages: the one in the guide, installed in a separate folder, and ones that cannot be used."""
 
 import json
 import re
@@ -17,7 +17,7 @@ Install = Callable[[str, str, str], None]
 
 @pytest.fixture
 def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
-    """Installs a package with a module and an entry point, as pip does it, where Python looks for packages."""
+    """Installs a package with a module and an entry point, as pip does, where Python looks for packages."""
     place = tmp_path / "site"
     place.mkdir()
     monkeypatch.syspath_prepend(str(place))
@@ -53,7 +53,7 @@ def test_the_study_of_the_guide_is_listed_run_and_reported(tmp_path: Path, insta
     assert "reach 1,024 of 512,000 steps" in judged["reason"]
 
 
-def test_a_study_that_cannot_be_used_is_named_and_harms_no_other(tmp_path: Path, install: Install) -> None:
+def test_a_study_that_cannot_be_used_is_named_and_affects_no_other(tmp_path: Path, install: Install) -> None:
     install("broken", "import no_such_module", "broken:STUDY")
     install("other", "STUDY = 1", "other:STUDY")
     answer = command("study", "list", cwd=tmp_path)
@@ -74,7 +74,7 @@ def test_a_name_that_is_taken_is_left_out(install: Install) -> None:
     assert list(faults) == ["fear:fear"]
 
 
-def test_an_item_that_two_studies_have_is_told_with_its_study(install: Install) -> None:
+def test_an_item_that_two_studies_share_is_named_with_its_study(install: Install) -> None:
     code = "from hedon.study import Item, Study\nSTUDY = Study('mine', '', '', (Item('hazard', '', '', lambda i: []),))"
     install("mine", code, "mine:STUDY")
     with pytest.raises(

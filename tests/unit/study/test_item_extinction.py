@@ -36,7 +36,7 @@ def make(worlds: dict[str, Sequence[WorldRecord]]) -> tuple[ResultTable, ResultT
 
 
 def died(worlds: Sequence[WorldRecord], *steps: int) -> list[WorldRecord]:
-    """The same worlds, the first of them gone at these steps."""
+    """The same worlds, the first of them extinct at these steps."""
     gone = [dataclasses.replace(w, last_step=s, extinct_step=s) for w, s in zip(worlds, steps, strict=False)]
     return [*gone, *worlds[len(steps) :]]
 
@@ -69,7 +69,7 @@ def test_the_share_of_extinct_worlds_with_its_interval(ten: list[WorldRecord]) -
     share = world_extinction(died(ten, 1024, 5120, 3072), 50 * 1024)
     assert (dear["low"], dear["high"]) == (share.low, share.high)
     assert 0.07 < share.low < 0.1 < 0.6 < share.high < 0.65  # three of ten
-    assert dear["p_paper"] is None  # not known to the paper's step
+    assert dear["p_paper"] is None  # not known up to the paper's step
     assert (dear["paper"], own["paper"]) == (0.9, 0.0)
     assert (own["extinct"], own["share"], own["by_step"]) == (0, 0.0, 50 * 1024)
     assert (dear["median_step"], own["median_step"]) == (None, None)
@@ -95,7 +95,7 @@ def test_the_median_step_counts_survivors(ten: list[WorldRecord]) -> None:
     assert half["share"] == pytest.approx(0.5)
 
 
-def test_who_dies_out_after_the_papers_step_lives(ten: list[WorldRecord]) -> None:
+def test_a_world_that_dies_out_after_the_papers_step_counts_as_alive(ten: list[WorldRecord]) -> None:
     late = [dataclasses.replace(w, last_step=2 * EXTINCTION_STEP, extinct_step=EXTINCTION_STEP + 1024) for w in ten]
     row = make({OWN: late})[0].rows.row(0, named=True)
     assert (row["extinct"], row["by_step"], row["median_step"]) == (0, EXTINCTION_STEP, None)
@@ -114,11 +114,11 @@ def test_the_papers_shares_are_compared_as_counts_of_ten(ten: list[WorldRecord])
     rows = make({OWN: late, DEAR: late})[0].rows
     assert dict(zip(rows["costs"], rows["p_paper"], strict=True)) == {
         DEAR: pytest.approx(fisher_mid_p(0, 10, 9, 10)),
-        OWN: 0.5,  # none of ten in both: the one table that there is, by half
+        OWN: 0.5,  # none of ten in both: the only possible table, counted half
     }
 
 
-def test_where_all_died_out_the_share_is_known_by_the_papers_step(ten: list[WorldRecord]) -> None:
+def test_if_all_died_out_the_share_is_known_at_the_papers_step(ten: list[WorldRecord]) -> None:
     row = make({DEAR: ten[:1]})[0].rows.row(0, named=True)
     assert (row["share"], row["worlds"], row["by_step"]) == (1.0, 1, EXTINCTION_STEP)
     assert row["median_step"] == ten[0].extinct_step

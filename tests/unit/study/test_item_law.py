@@ -24,12 +24,12 @@ LAW = mutation_law(CONFIG, gene_of(CONFIG, "neutral_1"))
 
 @cache
 def item_made(name: str, fidelity: str) -> list[object]:
-    """All that an item is made of; figures of thousands of walks are drawn once."""
+    """Everything that an item makes, cached so that figures of thousands of walks are drawn only once."""
     return list({item.name: item for item in LAWS}[name].make(ItemInputs(fidelity)))
 
 
 def make(name: str, fidelity: str = "corrected") -> NamedFigure:
-    """The figure of a name, which is that of its item or goes on from it."""
+    """The figure of this name, which is that of its item, or that with `_lines` added."""
     [named] = [made for made in item_made(name.removesuffix("_lines"), fidelity) if getattr(made, "name", "") == name]
     assert isinstance(named, NamedFigure)
     return named
@@ -48,7 +48,7 @@ def xy(line: Line2D) -> tuple[np.ndarray, np.ndarray]:
     return np.asarray(line.get_xdata(), np.float64), np.asarray(line.get_ydata(), np.float64)
 
 
-def test_the_hazard_by_energy_is_that_of_the_formula() -> None:
+def test_the_hazard_by_energy_follows_the_formula() -> None:
     curves = labeled(panel(make("hazard").figure, "hazard by energy"))
     assert list(curves) == ["0", "500,000", "1,000,000", "1,500,000"]
     energy, young = xy(curves["0"])
@@ -58,7 +58,7 @@ def test_the_hazard_by_energy_is_that_of_the_formula() -> None:
     assert old == pytest.approx(0.01 * odds / (1 + odds) + 2e-7 * np.exp(4.0))
 
 
-def test_the_hazard_by_age_starts_where_that_by_energy_does() -> None:
+def test_the_hazard_by_age_starts_at_the_hazard_by_energy() -> None:
     curves = labeled(panel(make("hazard").figure, "hazard by age"))
     assert list(curves) == ["0", "5", "10", "20", "40"]
     age, rate = xy(curves["20"])
@@ -66,7 +66,7 @@ def test_the_hazard_by_age_starts_where_that_by_energy_does() -> None:
     assert rate - rate[0] == pytest.approx(2e-7 * np.expm1(4e-6 * 1e6 * age), abs=1e-12)
 
 
-def test_the_legend_tells_the_mean_of_each_survival_curve() -> None:
+def test_the_legend_gives_the_mean_of_each_survival_curve() -> None:
     curves = labeled(panel(make("hazard").figure, "survival"))
     means = [float(label.split(": ")[1].replace(",", "")) for label in curves]
     assert means == sorted(means)
@@ -74,11 +74,11 @@ def test_the_legend_tells_the_mean_of_each_survival_curve() -> None:
     for mean, line in zip(means, curves.values(), strict=True):
         age, share = xy(line)
         assert (np.diff(share) <= 0).all()
-        area = age[0] + trapezoid(share, age)  # nearly all live until the axis begins
+        area = age[0] + trapezoid(share, age)  # nearly all are alive where the axis starts
         assert area == pytest.approx(mean, rel=0.02)
 
 
-def test_the_chance_of_a_birth_is_that_of_the_formula() -> None:
+def test_the_chance_of_a_birth_follows_the_formula() -> None:
     energy, chance = xy(panel(make("birth").figure, "chance").lines[0])
     assert chance == pytest.approx(0.4 / (1 + np.exp(-0.1 * energy)))
 
@@ -95,7 +95,7 @@ def test_an_agent_without_energy_just_replaces_itself() -> None:
 
 
 def test_the_axis_of_energy_has_one_slope_where_its_parts_meet() -> None:
-    """Else the curve would have a kink there that the function does not have."""
+    """Otherwise the curve would have a kink there that the function does not have."""
     scale = panel(make("birth").figure, "children").get_xaxis().get_transform()
     below, at, above = (scale.transform(np.array([energy])).item() for energy in (0.999, 1.0, 1.001))
     assert (above - at) / (at - below) == pytest.approx(1.0, abs=2e-3)
@@ -146,15 +146,15 @@ def test_the_walk_has_the_same_bytes_each_time(fidelity: str) -> None:
     assert svg_bytes(make("walk", fidelity).figure) == first
 
 
-def test_other_chances_give_other_walks() -> None:
+def test_other_seeds_give_other_walks() -> None:
     one, other = (svg_bytes(draw_walks(LAW, 41, np.random.default_rng(seed))) for seed in (1, 2))
     assert one != other
 
 
-def test_mutations_add_up_to_the_closed_form_where_nothing_is_clipped() -> None:
+def test_mutations_add_up_to_the_closed_form_if_nothing_is_clipped() -> None:
     wide = replace(LAW, limit=1e9)
     ends = lineages(wide, 50, 20_000, 1, np.random.default_rng(3))[-1].ravel()
-    # The quartiles of Cauchy noise lie at ± its scale.
+    # The quartiles of Cauchy noise are at ± its scale.
     assert np.quantile(ends, [0.25, 0.5, 0.75]) == pytest.approx([-1, 0, 1], abs=0.05)
     edges = np.linspace(-10, 10, 21)
     assert np.histogram(ends, edges)[0] / len(ends) == pytest.approx(unlimited_share(wide, 50, edges), abs=0.02)
@@ -174,5 +174,5 @@ def test_frozen_lines_of_a_world_share_a_table() -> None:
     steps = np.diff(genes, axis=0)
     for world in range(3):
         size = max(np.abs(steps[:, world]).max(), 1e-3)
-        assert len(np.unique(np.round(steps[:, world] / size, 4))) <= 2 * 4  # rounding splits few of the four
+        assert len(np.unique(np.round(steps[:, world] / size, 4))) <= 2 * 4  # rounding splits at most a few of the four
     assert np.abs(steps[:, 0]).max() != np.abs(steps[:, 1]).max()

@@ -46,13 +46,13 @@ def row(result: ResultTable, condition: str, quantity: str) -> dict[str, Any]:
 
 
 def lives(world: WorldRecord) -> tuple[np.ndarray, np.ndarray]:
-    """Known lengths of life and whether they are whole."""
+    """Known lengths of life and whether they are complete."""
     born, died = (world.agents[name].cast(pl.Float64).to_numpy() for name in ("birth_step", "death_step"))
     return np.where(np.isnan(died), world.last_step, died) - born, ~np.isnan(died)
 
 
 def kaplan_meier(world: WorldRecord) -> tuple[list[float], list[float]]:
-    """Ages at death and the share that lives on after each, by the definition."""
+    """Ages at death and the share that survives each, by definition."""
     length, whole = lives(world)
     ages, shares, share = sorted(set(length[whole].tolist())), [], 1.0
     for age in ages:
@@ -73,7 +73,7 @@ def test_the_items_are_those_of_the_paper_at_its_scale() -> None:
     assert {(item.scale.seeds, item.scale.steps) for item in LIVES} == {((1, 2, 3, 4, 5), STEPS)}
 
 
-def test_lifetimes_are_means_over_worlds_beside_the_papers(five: list[WorldRecord]) -> None:
+def test_lifetimes_are_means_over_worlds_next_to_the_papers(five: list[WorldRecord]) -> None:
     found, _ = make("life-sizes", small=five[:2], baseline=five, large=five[3:])
     for condition, worlds, paper in (("small", five[:2], 120668), ("baseline", five, 6310), ("large", five[3:], 5718)):
         means = [float(length[whole].mean()) for length, whole in map(lives, worlds)]
@@ -136,7 +136,7 @@ def test_a_cut_world_counts_its_living_as_censored(five: list[WorldRecord]) -> N
     assert row(found, "uniform", "share of lives censored")["mean"] == pytest.approx(1 - length.height / born)
 
 
-def test_intervals_are_shown_from_three_worlds_on(five: list[WorldRecord]) -> None:
+def test_intervals_are_shown_from_five_worlds_on(five: list[WorldRecord]) -> None:
     for worlds in (1, 2, 5):
         headers, rows = cells(make("life-places", uniform=five[:worlds])[0])
         assert ("95 % interval" in headers) == (worlds == 5)

@@ -29,7 +29,7 @@ def test_every_section_belongs_to_one_concern() -> None:
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
-def test_every_setting_stands_once_with_its_value_and_what_the_page_of_settings_says(fidelity: str) -> None:
+def test_every_setting_appears_once_with_its_value_and_the_text_of_the_settings_page(fidelity: str) -> None:
     config = load_config("baseline", fidelity)
     rows = {row["setting"]: row for row in settings(fidelity)}
     assert len(rows) == len(settings(fidelity))
@@ -41,7 +41,7 @@ def test_every_setting_stands_once_with_its_value_and_what_the_page_of_settings_
         assert (row["meaning"], row["unit"], row["origin"]) == (told.meaning, told.unit, told.source)
 
 
-def test_fidelities_are_told_exactly_where_they_differ() -> None:
+def test_fidelities_are_listed_exactly_where_they_differ() -> None:
     corrected, *others = (load_config("baseline", fidelity) for fidelity in FIDELITIES)
     expected = {path for other in others for path, _, _ in diff(corrected, other)}
     told = {row["setting"]: row for row in settings("corrected") if row.get("in_as_printed") is not None}
@@ -57,13 +57,13 @@ def test_columns_without_any_difference_are_left_out() -> None:
     assert "The same" not in found["parameters_learning"].note
 
 
-def test_conditions_tell_what_presets_change() -> None:
+def test_conditions_show_what_presets_change() -> None:
     rows = list(tables("released")["parameters_condition"].rows.iter_rows(named=True))
     changes = {(row["preset"], row["setting"]): (row["baseline"], row["value"]) for row in rows}
     assert len(changes) == len(rows)
     assert changes["small", "arena.width"] == ("480.0", "360.0")
     assert changes["poison", "food.poison.gives.energy"] == ("1.0", "-0.6")
-    assert ("poison", "food.poison.growth_rate") not in changes  # as that of normal food, also as released
+    assert ("poison", "food.poison.growth_rate") not in changes  # the same as for normal food, even if released
     assert not any(preset == "baseline" for preset, _ in changes)
     for preset in ("small", "large", "centered", "relocation"):
         expected = {path for path, _, _ in diff(load_config("baseline"), load_config(preset))}

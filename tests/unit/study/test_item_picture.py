@@ -78,7 +78,7 @@ def test_without_a_snapshot_there_is_no_arena() -> None:
     assert [condition.preset for condition in ITEMS["arena"].conditions] == ["baseline"]
 
 
-def test_the_arena_shows_all_and_the_rays_of_one(tmp_path: Path) -> None:
+def test_the_arena_shows_everything_and_the_rays_of_one_agent(tmp_path: Path) -> None:
     [named] = make("arena", baseline=synthetic_snapshot(agents=7))
     axes = named.figure.axes[0]
     assert sorted(discs(axes)) == [1, 7, 12]  # the ring around one, agents, foods
@@ -86,7 +86,7 @@ def test_the_arena_shows_all_and_the_rays_of_one(tmp_path: Path) -> None:
     assert imread(save_figure(named.figure, tmp_path / "arena.png")).shape[1] == 7.2 * 160
 
 
-def test_an_arena_where_nobody_lives_is_drawn() -> None:
+def test_an_arena_without_agents_is_drawn() -> None:
     [named] = make("arena", baseline=nobody())
     assert discs(named.figure.axes[0]) == [12]
 
@@ -150,7 +150,7 @@ def test_only_panels_with_a_snapshot_hold_agents_and_foods() -> None:
     assert "poison" not in missing
 
 
-def test_the_legend_tells_each_color_once() -> None:
+def test_the_legend_explains_each_color_once() -> None:
     [named] = make("arenas")
     labels = [text.get_text() for text in named.figure.legends[0].get_texts()]
     assert labels[:4] == ["agent", "normal food", "poor food", "poison food"]

@@ -1,4 +1,4 @@
-"""What is planned for a request, given what lies in the folder of the runs."""
+"""What is planned for a request, given the runs that are already in the folder."""
 
 import shutil
 from dataclasses import replace
@@ -68,7 +68,7 @@ def test_an_arm_has_its_own_fidelity_or_that_of_the_request() -> None:
 
 
 def begun(job: RunJob) -> bool:
-    """Whether it goes on with a run that is there."""
+    """Whether the job continues an existing run."""
     return (job.folder / MANIFEST).is_file()
 
 
@@ -80,7 +80,7 @@ def test_the_longest_job_comes_first_and_no_two_share_a_folder(tmp_path: Path) -
     assert not any(begun(job) for job in jobs)
 
 
-def test_what_is_there_is_used_and_what_is_too_short_is_gone_on_with(tmp_path: Path) -> None:
+def test_existing_runs_are_used_and_those_that_are_too_short_are_continued(tmp_path: Path) -> None:
     small_run(tmp_path / "mine", 256, seeds=(1, 2))
     item = an_item("a", BASE)
     assert planned(Request((item,), "corrected"), tmp_path) == []
@@ -101,7 +101,7 @@ def test_a_run_that_was_killed_is_as_long_as_its_records(tmp_path: Path) -> None
     assert (begun(job), job.world_steps) == (True, 512)
 
 
-def test_worlds_that_died_out_are_not_made_again(tmp_path: Path) -> None:
+def test_worlds_that_died_out_are_not_simulated_again(tmp_path: Path) -> None:
     deadly = Condition("deadly", overrides=(*SMALL, "hazard.kappa=1.0", "hazard.alpha_energy=100.0", "birth.kappa=0.0"))
     small_run(tmp_path / "mine", 512, overrides=deadly.overrides[len(SMALL) :])
     assert None not in load_manifest(tmp_path / "mine").extinct_steps
@@ -138,8 +138,8 @@ def test_a_run_whose_config_lacks_a_setting_of_this_version_is_named(tmp_path: P
     assert len(planned(request, tmp_path)) == 1
 
 
-def test_a_longer_world_is_read_as_if_it_had_ended_where_it_was_asked_to(tmp_path: Path) -> None:
-    """The same seed gives the same bits, so a cut run must be the shorter run, but for what the living did later."""
+def test_a_longer_world_is_read_as_if_it_had_ended_at_the_requested_step(tmp_path: Path) -> None:
+    """The same seed gives the same bits, so a cut run must equal the shorter run, but for what the living did later."""
     small_run(tmp_path / "long" / "run", 512)
     small_run(tmp_path / "short" / "run", 256)
     request = Request((an_item("a", BASE),), "corrected")
@@ -158,7 +158,7 @@ def test_a_longer_world_is_read_as_if_it_had_ended_where_it_was_asked_to(tmp_pat
         assert living["children"].null_count() == living.height > 0
 
 
-def test_a_gathered_world_goes_on_after_its_run_was_lengthened(tmp_path: Path) -> None:
+def test_a_gathered_world_is_as_long_as_its_extended_run(tmp_path: Path) -> None:
     small_run(tmp_path / "mine", 256)
     resume(tmp_path / "mine", 512, 1)
     request = Request((an_item("a", BASE, steps=512),), "corrected")
@@ -193,7 +193,7 @@ def test_equal_settings_written_in_two_ways_are_one_condition(tmp_path: Path) ->
     assert len({world.condition for world in worlds}) == 1
 
 
-def test_a_damaged_part_is_named_and_a_whole_run_of_the_same_worlds_counts(tmp_path: Path) -> None:
+def test_a_damaged_part_is_named_and_an_intact_run_of_the_same_worlds_is_used(tmp_path: Path) -> None:
     small_run(tmp_path / "a", 256)
     small_run(tmp_path / "b", 256)
     part = sorted((tmp_path / "a" / "agents").glob("part-*.parquet"))[0]
@@ -204,8 +204,8 @@ def test_a_damaged_part_is_named_and_a_whole_run_of_the_same_worlds_counts(tmp_p
     assert {world.run for world in found.worlds.values()} == {"b"}
 
 
-def test_a_world_whose_living_were_not_written_ends_where_they_were(tmp_path: Path) -> None:
-    """A run that goes on writes the living now and then: those born since are not in the records."""
+def test_a_world_ends_at_the_step_at_which_its_living_were_last_written(tmp_path: Path) -> None:
+    """A run in progress writes the living only now and then; agents born since are not in the records."""
     small_run(tmp_path / "short" / "run", 256)
     small_run(tmp_path / "run", 512)
     shutil.copy(tmp_path / "short" / "run" / "agents" / "living.parquet", tmp_path / "run" / "agents")
@@ -219,7 +219,7 @@ def test_a_world_whose_living_were_not_written_ends_where_they_were(tmp_path: Pa
     assert begun(job)
 
 
-def test_a_word_that_names_nothing_is_told_with_the_nearest() -> None:
+def test_an_unknown_name_is_reported_with_the_nearest_one() -> None:
     with pytest.raises(StudyError, match=r"no study or item 'hazrd'; did you mean hazard\?"):
         choose(["hazrd"])
 

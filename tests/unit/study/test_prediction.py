@@ -4,7 +4,7 @@ import pytest
 from hedon_studies.kanagawa_doya_2024.analysis.prediction import prediction
 
 
-def test_the_slope_s_interval_covers_as_often_as_promised() -> None:
+def test_the_interval_of_the_slope_covers_as_often_as_promised() -> None:
     rng = np.random.default_rng(8)
     covered = 0
     for _ in range(1000):

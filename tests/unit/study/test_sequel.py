@@ -1,4 +1,4 @@
-"""The rules on the sequel's claims, on made worlds in which the answer is known: planted, absent, drift alone."""
+"""The rules for the sequel's claims, on synthetic worlds with a known answer: planted, absent, or drift alone."""
 
 from dataclasses import replace
 from functools import cache
@@ -19,13 +19,13 @@ from hedon_studies.fear.claim import BY_CHANCE, FAMILY, OFTEN, SEQUEL_CLAIMS, SE
 from hedon_studies.fear.program import PITFALL_RUN, PREDATOR_RUN, WINDOW
 from hedon_studies.kanagawa_doya_2024.paper import STEPS
 
-_PUSH = 1.5  # per generation, planted; some four times the scale of mutations
+_PUSH = 1.5  # per generation, planted; about four times the scale of mutations
 _GENERATIONS, _WIDTH = 20, 20
 
 
 @cache
 def made(preset: str, seed: int, pushed: str = "", push: float = 0.0) -> WorldRecord:
-    """A world of a few families whose weights mutate by the preset's law; one of them is pushed in each generation."""
+    """A world of a few families whose weights mutate under the preset's law; one weight is pushed each generation."""
     config = load_config(preset)
     own = hunted(config) if len(config.species) > 1 else next(iter(config.species))
     genome = config.species[own].genome
@@ -68,7 +68,7 @@ def asked(worlds: list[WorldRecord]) -> dict[str, Verdict]:
 
 
 def seen(role: str) -> str:
-    """The gene of seeing one's own species, or those who eat it."""
+    """The gene for seeing one's own species, or the species that eats it."""
     config = load_config("predator")
     own = hunted(config)
     return f"w_see_{own if role == 'own' else hunters(config, own)[0]}"
@@ -95,7 +95,7 @@ def test_drift_alone_is_neither_fear_nor_liking() -> None:
     assert found["liking predators in some worlds"].verdict == "undecided"
     assert found["liking one's own kind in some worlds"].verdict == "undecided"
     scores = np.array([fear(world) for world in worlds], float)
-    assert abs(scores.mean()) < 3 / np.sqrt(len(scores))  # as neutral genes, of sd 1
+    assert abs(scores.mean()) < 3 / np.sqrt(len(scores))  # like neutral genes, with sd 1
     (rule,) = [claim for claim in SEQUEL_CLAIMS if claim.name == "fear often evolves"]
     none = judge(replace(rule, measure=lambda _: -1.0), "c", worlds * 3)
     assert (none.verdict, none.worlds) == ("fails", 24)
@@ -136,15 +136,15 @@ def test_few_short_or_lone_worlds_decide_nothing() -> None:
     assert (dead.verdict, "6 extinct left out" in dead.reason) == ("undecided", True)
 
 
-def test_worlds_that_lost_a_species_are_counted_beside_every_claim() -> None:
-    """By Kaplan and Meier: of five worlds one loses its prey, one its predators, and one is followed half the way."""
+def test_worlds_that_lost_a_species_are_reported_with_every_claim() -> None:
+    """Kaplan-Meier: of five worlds, one loses its prey, one its predators, and one is followed only halfway."""
     worlds = group("predator", 5, seen("hunter"), -_PUSH)
     ends = [{"extinct_step": 1000}, {"last_step": STEPS // 2}, {"apart_step": STEPS - 1}, {}, {}]
     mixed = [replace(world, **end) for world, end in zip(worlds, ends, strict=True)]
     for found in asked([*mixed, *group("predator-less-food", 5)]).values():
         assert f"every species lasts to step {STEPS:,} in " in found.reason
     reason = asked(mixed)["fear often evolves"].reason
-    # 4/5 live on past step 1000; of the three at risk at the last step but one, one is lost.
+    # 4/5 survive step 1000; of the three at risk at the second-to-last step, one is lost.
     assert f"in {100 * 4 / 5 * 2 / 3:.0f} % (" in reason
     assert "of 5 worlds (Kaplan and Meier)" in reason
     pitfalls = asked([replace(world, extinct_step=9) for world in group("pitfall-weak", 4)])["no fear of weak pitfalls"]
@@ -173,8 +173,8 @@ def test_worlds_of_each_condition_are_counted_by_what_died_out() -> None:
     assert 0 < row["low"] < 0.5 < row["high"] < 1
 
 
-def test_the_numbers_of_each_species_stand_beside_the_step_of_its_end() -> None:
-    """As means over the last 51,200 steps: of windows of 1,024, those from the 51st last on count for nothing."""
+def test_the_numbers_of_each_species_are_given_with_the_step_of_its_extinction() -> None:
+    """Means over the last 51,200 steps: only the last 50 windows of 1,024 steps count."""
     steps = [number * WINDOW for number in range(1, 61)]
     numbers = pl.DataFrame({"step": steps, "alive": [1000] * 10 + [20, 40] * 25})
     first, second = (replace(world, population=numbers, last_step=steps[-1]) for world in group("predator", 2))
@@ -184,7 +184,7 @@ def test_the_numbers_of_each_species_stand_beside_the_step_of_its_end() -> None:
     assert (second_row["died_out"], second_row["alive"]) == (7, None)
 
 
-def test_windows_stand_beside_those_of_the_program() -> None:
+def test_windows_are_shown_next_to_those_of_the_program() -> None:
     numbers = pl.DataFrame(
         {"step": [WINDOW, 2 * WINDOW], "alive": [300, 450], "births": [160, 170], "deaths_eaten": [10, 20]}
         | {"food_normal": [290, 310], "energy_mean": [48.0, 32.0], "deaths": [9, 8], "obstacles_touched": [5, 4]}

@@ -1,4 +1,4 @@
-"""The items of the sequel, made of a small run of predators and prey: planned, run, found again, drawn."""
+"""The items of the sequel, made from a small run of predators and prey: planned, run, found again and drawn."""
 
 from pathlib import Path
 
@@ -23,7 +23,7 @@ STEPS = 2 * FRAMES
 
 @pytest.fixture(scope="module")
 def request_(tmp_path_factory: pytest.TempPathFactory) -> tuple[Request, Path]:
-    """A request for worlds of predators and prey, and the folder where the run stands that has them."""
+    """A request for worlds of predators and prey, and the folder with the run that has them."""
     folder = tmp_path_factory.mktemp("sequel")
     request = Request(choose(ITEMS)[0].items, "corrected", (3,), STEPS)
     jobs = [job for job in run_jobs(Ensemble(needs(request), folder)) if job.plan.config.name == "predator"]
@@ -54,7 +54,7 @@ def test_a_run_of_two_species_is_found_and_serves_each_of_them(gathered: Gathere
     assert gathered.faults == ()
 
 
-def test_nothing_is_run_twice_but_what_lacks_positions(request_: tuple[Request, Path]) -> None:
+def test_only_worlds_that_lack_positions_are_run_again(request_: tuple[Request, Path]) -> None:
     request, folder = request_
     assert [job.plan.config.name for job in run_jobs(find_ensemble(needs(request), folder))] == ["predator-square"]
     (job,) = (job for job in run_jobs(Ensemble(needs(request), folder)) if job.plan.config.name == "predator")
@@ -78,7 +78,7 @@ def test_each_species_has_its_own_history(gathered: Gathered) -> None:
     assert "Not run yet: prey, square arena" in figures[0].caption
 
 
-def test_numbers_are_those_of_the_table(gathered: Gathered) -> None:
+def test_the_figure_shows_the_numbers_of_the_table(gathered: Gathered) -> None:
     (figure,) = made(gathered, "sequel-numbers")
     assert isinstance(figure, NamedFigure)
     worlds = {world.species: world for world in gathered.demanded()}
@@ -89,7 +89,7 @@ def test_numbers_are_those_of_the_table(gathered: Gathered) -> None:
     assert np.array_equal(end.get_xydata(), np.transpose(counts)[-1:])
 
 
-def test_deaths_by_cause_are_all_deaths(gathered: Gathered) -> None:
+def test_deaths_by_cause_add_up_to_all_deaths(gathered: Gathered) -> None:
     figure, table = made(gathered, "sequel-deaths")
     assert isinstance(figure, NamedFigure)
     assert isinstance(table, ResultTable)

@@ -1,4 +1,4 @@
-"""The studies as items: what they run, and that they can be made from whatever worlds there are."""
+"""The items of the studies: what they run, and that they can be made from whatever worlds exist."""
 
 import dataclasses
 from collections.abc import Mapping, Sequence
@@ -60,8 +60,8 @@ def test_an_item_is_made_from_no_world_one_and_several(item: Item, worlds: list[
 
 
 def test_arms_share_runs_with_other_items() -> None:
-    """All faults are settings of the released program, and no fault is the corrected baseline, whatever is
-    reproduced."""
+    """All faults are settings of the paper's program, and the arm without faults is the corrected baseline, whatever
+    fidelity is asked for."""
     faults = {condition.label: condition.config("as_printed") for condition in fault.CONDITIONS}
     assert list(faults) == list(fault.CELLS)
     assert len({digest(config) for config in faults.values()}) == 16
@@ -91,7 +91,7 @@ def test_arms_share_runs_with_other_items() -> None:
 
 
 def test_an_effect_of_growth_is_found(worlds: list[WorldRecord]) -> None:
-    """Worlds with growth have twice the numbers of the same worlds without, in all cells."""
+    """In all cells, worlds with growth have twice as many agents as the same worlds without."""
     living = worlds[::2]
     doubled = [dataclasses.replace(w, population=w.population.with_columns(pl.col("agent_steps") * 2)) for w in living]
     tables, _ = made(fault.FAULTS, {label: doubled if cell[0] else living for label, cell in fault.CELLS.items()})
@@ -100,7 +100,7 @@ def test_an_effect_of_growth_is_found(worlds: list[WorldRecord]) -> None:
     assert rows["effect"][0] == "growth"
     assert rows["estimate"][0] == pytest.approx(alive)
     assert rows["estimate"][1:].to_numpy() == pytest.approx(0.0, abs=1e-9)
-    # A rate per step lived is halved: a ratio.
+    # A rate per step lived is halved, as a ratio.
     food = tables["fault_effects"].rows.filter(pl.col("measure") == "food_per_agent_step")
     assert (food["scale"][0], food["estimate"][0]) == ("ratio", pytest.approx(0.5))
     cells = tables["fault_cells"].rows
@@ -124,7 +124,7 @@ def test_an_extinct_world_counts_as_empty(worlds: list[WorldRecord]) -> None:
     assert found["restricted_lifetime"] is not None
     assert found["w_normal_last"] is not None
     alone = MEASURES["alive_mean"].value(worlds[1].until(worlds[1].last_step))
-    assert alone is not None  # the end of its own records: somebody lived in the last tenth
+    assert alone is not None  # up to the end of its own records, agents lived in the last tenth
     assert 0 < alone < 50
 
 
@@ -149,11 +149,11 @@ def test_the_rule_of_decline() -> None:
     assert fate(world([50, 150, *[100] * 7, 200], extinct=10_000)).fate == EXTINCT
     risen = fate(world([50, 150, 100, 70, 70, *[100] * 5]))
     assert (risen.fate, risen.recovered) == (STANDING, True)
-    assert not fate(world([50, 150, *[100] * 8])).recovered  # the first tenth, of founders, is no low
+    assert not fate(world([50, 150, *[100] * 8])).recovered  # the first tenth, with the founders, is no low
     assert not fate(world([50])).is_lost
 
 
-def test_survivors_are_told_from_all(worlds: list[WorldRecord]) -> None:
+def test_survivors_are_distinguished_from_all_worlds(worlds: list[WorldRecord]) -> None:
     tables, _ = made(released.RELEASED, {"released": worlds})
     fates = {row["fate"]: row["count"] for row in tables["released_fate"].rows.iter_rows(named=True)}
     assert fates["extinct"] == 1
@@ -184,7 +184,7 @@ def test_appetite_by_weight(worlds: list[WorldRecord]) -> None:
         (1.0, 3.0, 20, 20 * 5120),
     ]
     assert [b.eaten for b in found] == pytest.approx([1000 / 5120, 10_000 / 5120])
-    # Half-way between two bins lies half-way between their weights.
+    # The rate halfway between those of two bins is at the weight halfway between theirs.
     assert half_way_weight(found) == pytest.approx(0.75)
 
 
@@ -193,8 +193,8 @@ def test_the_half_way_weight() -> None:
         weights = (-1.0, 0.5, 2.0, 5.0)
         return [AppetiteBin(w - 0.5, w + 0.5, 100, w, 1000, rate) for w, rate in zip(weights, rates, strict=False)]
 
-    assert half_way_weight(bins(1.0, 1.0, 3.0, 2.5)) == pytest.approx(1.25)  # 2 of 1 and 3, the best
-    assert half_way_weight(bins(1.0, 2.5, 1.5, 3.0)) == pytest.approx(3.0)  # a dip counts: from then on they eat well
+    assert half_way_weight(bins(1.0, 1.0, 3.0, 2.5)) == pytest.approx(1.25)  # at 2, halfway to the best, 3
+    assert half_way_weight(bins(1.0, 2.5, 1.5, 3.0)) == pytest.approx(3.0)  # a dip counts: they eat well from then on
     assert half_way_weight(bins(2.0, 1.0)) is None
     assert half_way_weight(bins(2.0)) is None
     assert half_way_weight([]) is None
@@ -229,7 +229,7 @@ def test_acting_is_compared_seed_by_seed(worlds: list[WorldRecord]) -> None:
 
 
 def test_courses_of_unequal_length_share_one_axis(worlds: list[WorldRecord]) -> None:
-    short = [world.until(1024) for world in worlds]  # alone it would be drawn in steps, not in thousands
+    short = [world.until(1024) for world in worlds]  # on their own, these would be drawn in steps, not in thousands
     _, drawn = made(acting.ACTING, {acting.FULL: worlds, acting.HALF: short})
     assert drawn[0].figure.axes
     for axes in drawn[0].figure.axes:

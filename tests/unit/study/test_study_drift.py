@@ -46,7 +46,7 @@ def test_without_worlds_it_says_so() -> None:
     assert tables["drift_world"].rows.is_empty()
 
 
-def test_worlds_of_all_conditions_are_put_together(worlds: list[WorldRecord]) -> None:
+def test_worlds_of_all_conditions_are_pooled(worlds: list[WorldRecord]) -> None:
     tables, _ = make({"baseline": worlds, "large": worlds[:2]})
     by_world = tables["drift_world"].rows
     assert by_world.group_by("condition").len().sort("condition").rows() == [("baseline", 9), ("large", 6)]
@@ -84,7 +84,7 @@ def test_the_figure_has_a_point_per_world_and_the_mean_of_all(worlds: list[World
     assert [label.get_text() for label in named.figure.axes[0].get_yticklabels()] == ["baseline", "large", "all"]
 
 
-def test_a_world_without_a_whole_pedigree_is_left_out(worlds: list[WorldRecord]) -> None:
+def test_a_world_without_a_complete_pedigree_is_left_out(worlds: list[WorldRecord]) -> None:
     torn = dataclasses.replace(worlds[0], agents=worlds[0].agents.filter(pl.col("agent_id") != 60))
     rows = make({"baseline": [torn, *worlds[1:]]})[0]["drift_all"].rows
     assert set(rows["worlds"]) == {2}

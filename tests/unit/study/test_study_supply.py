@@ -29,14 +29,14 @@ def make(found: Mapping[str, Sequence[WorldRecord]]) -> tuple[dict[str, ResultTa
     return tables, [part for part in parts if isinstance(part, NamedFigure)]
 
 
-def test_five_times_as_much_grows_with_the_fault_and_in_the_released_program() -> None:
+def test_with_the_fault_and_in_the_papers_program_five_times_as_much_grows() -> None:
     grows = {condition.label: growth(condition.config("corrected")) for condition in CONDITIONS}
     assert len(grows) == 9
     for label, value in grows.items():
         assert value == (0.2 if label.endswith("corrected") else 1.0), label
 
 
-def test_what_is_eaten_is_counted_in_the_last_tenth(worlds: list[WorldRecord]) -> None:
+def test_eaten_food_is_counted_in_the_last_tenth(worlds: list[WorldRecord]) -> None:
     tables, _ = make({"small, corrected": worlds})
     rows = tables["supply_worlds"].rows
     for row, world in zip(rows.rows(named=True), worlds, strict=True):
@@ -45,7 +45,7 @@ def test_what_is_eaten_is_counted_in_the_last_tenth(worlds: list[WorldRecord]) -
         eaten = int(tail["eaten_normal"].sum())
         assert row["eaten_share"] == pytest.approx(eaten / (0.2 * 4 * 1024))
         assert row["eaten"] == pytest.approx(eaten / int(tail["agent_steps"].sum()))
-        # The point of a world lies on the line of what it eats: so many agents, so much each.
+        # The point of a world is on the line of what it eats: the number of agents times what each eats.
         assert row["eaten"] * row["alive_mean"] == pytest.approx(0.2 * row["eaten_share"])
     [condition] = tables["supply"].rows.rows(named=True)
     assert (condition["condition"], condition["worlds"], condition["grows"]) == ("small, corrected", 2, 0.2)
@@ -53,7 +53,7 @@ def test_what_is_eaten_is_counted_in_the_last_tenth(worlds: list[WorldRecord]) -
     assert condition["eaten"] == pytest.approx(np.exp(np.log(rows["eaten"].to_numpy()).mean()))
 
 
-def test_the_papers_rate_feeds_so_many(worlds: list[WorldRecord]) -> None:
+def test_the_papers_rate_feeds_the_expected_number(worlds: list[WorldRecord]) -> None:
     rows = make(dict.fromkeys((condition.label for condition in CONDITIONS), worlds))[0]["supply"].rows
     feeds = dict(zip(rows["condition"], rows["feeds"], strict=True))
     assert feeds["small, corrected"] == pytest.approx(0.2 / 0.0045)
@@ -80,6 +80,6 @@ def test_the_figure_has_a_panel_per_condition_with_its_worlds_its_supplies_and_t
         assert set(np.asarray(rate.get_ydata())) == {PAPER[condition].food_per_step}
 
 
-def test_worlds_in_which_nobody_eats_leave_the_panels_empty() -> None:
+def test_worlds_in_which_no_agent_eats_leave_the_panels_empty() -> None:
     figure = draw_supply([], ["corrected"], {"small": 0.0045, "other": None}, [0.2])
     assert [len(axes.lines) for axes in figure.axes] == [2, 1]

@@ -30,7 +30,7 @@ def worlds(tmp_path_factory: pytest.TempPathFactory) -> list[WorldRecord]:
 
 
 def claim(figures: list[float], over_worlds: OverWorlds, **region: Any) -> Claim:
-    """A claim whose figure of the world with seed i + 1 is figures[i]."""
+    """A claim whose value for the world with seed i + 1 is figures[i]."""
     options: dict[str, Any] = {"steps": 0} | region
     return Claim("a", Condition("baseline"), "text", lambda w: figures[w.seed - 1], over_worlds, "0", **options)
 
@@ -39,7 +39,7 @@ def test_where_an_interval_lies() -> None:
     assert place(1, 2, 0, math.inf) == "holds"
     assert place(-2, -1, 0, math.inf) == "fails"
     assert place(-1, 1, 0, math.inf) == "undecided"
-    assert place(0, 1, 0, math.inf) == "undecided"  # it includes the border
+    assert place(0, 1, 0, math.inf) == "undecided"  # it includes the bound
     assert place(2, 3, 0, 1) == "fails"
     assert place(math.nan, math.nan, 0, 1) == "undecided"
 
@@ -66,7 +66,7 @@ def test_six_of_six_worlds_decide(worlds: list[WorldRecord]) -> None:
     assert judge(claim([1.0] * 5, "share", low=0.5), "c", worlds[:5]).verdict == "undecided"
 
 
-def test_the_difference_from_the_paper_is_asked_apart(worlds: list[WorldRecord]) -> None:
+def test_the_difference_from_the_paper_is_tested_separately(worlds: list[WorldRecord]) -> None:
     figures = [1.0, -1.0, -1.0] * 4
     unlike = judge(claim(figures, "share", low=0.5, reported_count=(5, 5)), "c", worlds)
     assert (unlike.verdict, unlike.against_reported) == ("undecided", "differs")
@@ -75,16 +75,16 @@ def test_the_difference_from_the_paper_is_asked_apart(worlds: list[WorldRecord])
     assert (like.verdict, like.against_reported) == ("holds", "no difference shown")
 
 
-def test_the_power_stands_with_the_verdict_on_modes(worlds: list[WorldRecord]) -> None:
+def test_the_verdict_on_modes_comes_with_its_power(worlds: list[WorldRecord]) -> None:
     many = [dataclasses.replace(worlds[i % 12], seed=i + 1) for i in range(60)]
     for count, power in ((6, "0.2"), (12, "0.36"), (60, "0.98")):
         found = judge(claim(list(np.linspace(-1, 1, 60)), "modes"), "c", many[:count])
-        assert found.verdict == "undecided", "that no second mode is found is no evidence of one mode"
+        assert found.verdict == "undecided", "finding no second mode is no evidence of a single mode"
         assert f"power {power}" in found.reason
 
 
-def test_extinct_worlds_do_not_stand_for_short_ones(worlds: list[WorldRecord]) -> None:
-    """14 worlds die out, 26 live at half of the time: not "share 1.00 of 14 worlds, holds"."""
+def test_extinct_worlds_do_not_represent_short_ones(worlds: list[WorldRecord]) -> None:
+    """14 worlds die out and 26 are alive halfway: the verdict is not "share 1.00 of 14 worlds, holds"."""
     many = [dataclasses.replace(worlds[i % 12], seed=i) for i in range(40)]
     mixed = [dataclasses.replace(w, extinct_step=1024, last_step=1024) for w in many[:14]] + many[14:]
     rule = claim([], "extinction", low=0.55, steps=2 * 5120, reported_count=(9, 10))
@@ -92,7 +92,7 @@ def test_extinct_worlds_do_not_stand_for_short_ones(worlds: list[WorldRecord]) -
     assert (found.verdict, found.worlds) == ("undecided", 40)
     assert (found.value, found.high) == (pytest.approx(0.35), 1.0)
     assert "26 of 40 worlds live and end before step 10,240" in found.reason
-    assert found.against_reported == "no difference shown"  # what the 26 may still do
+    assert found.against_reported == "no difference shown"  # as the 26 may still die out
     reached = judge(dataclasses.replace(rule, steps=5120), "c", mixed)
     assert (reached.verdict, reached.value) == ("fails", pytest.approx(0.35))
     assert reached.p_reported == pytest.approx(fisher_mid_p(14, 40, 9, 10))
@@ -127,7 +127,7 @@ def test_too_few_too_short_or_extinct_worlds_decide_nothing(worlds: list[WorldRe
 
 
 def test_wide_and_hardly_are_judged_against_neutral_genes(worlds: list[WorldRecord]) -> None:
-    """The figures are scores, 1 apart for neutral genes: nine in ten by one half are held, whatever their units."""
+    """The values are scores, of standard deviation 1 for neutral genes, so the units of a gene do not matter."""
     scores = np.random.default_rng(1).normal(size=12)
     wide, hardly = claim(list(2 * scores), "spread", low=1 / 1.5), claim(list(0.3 * scores), "distance", high=1.5)
     assert judge(wide, "c", worlds).verdict == "holds"
@@ -139,7 +139,7 @@ def test_wide_and_hardly_are_judged_against_neutral_genes(worlds: list[WorldReco
 
 
 def test_verdicts_on_drifting_weights_are_right(worlds: list[WorldRecord]) -> None:
-    """Chances of each verdict where a weight drifts as neutral genes do, or strays three times as far or a third."""
+    """How often each verdict comes up if a weight drifts as far as neutral genes do, three times as far or a third."""
     rng, trials = np.random.default_rng(2), 400
     held, wide, wrong = 0, 0, 0
     for _ in range(trials):
@@ -163,10 +163,10 @@ def test_recorded_neutral_genes_that_do_not_drift_as_walks_do_decide_nothing(
 @pytest.mark.parametrize(
     ("shift", "scale", "least"), [(0.0, 1.0, 0.0), (1.0, 1.0, 0.8), (0.0, 0.3, 0.95), (0.0, 3.0, 0.95)]
 )
-def test_a_random_walk_is_told_from_selection(
+def test_a_random_walk_is_distinguished_from_selection(
     worlds: list[WorldRecord], shift: float, scale: float, least: float
 ) -> None:
-    """Ten worlds: size under drift, power where weights are pushed by one score, held to 0.3 or thrown to 3."""
+    """Ten worlds: size under drift, and power if scores are shifted by 1, narrowed to 0.3 or widened to 3."""
     rng, trials = np.random.default_rng(3), 300
     rule = claim([0.0] * 12, "walk")
     found = [estimate(rule, shift + scale * rng.normal(size=10), worlds[:10]).verdict for _ in range(trials)]
@@ -210,13 +210,13 @@ def test_only_conditions_of_equal_fidelity_are_compared(worlds: list[WorldRecord
     ]
 
 
-def test_claims_are_asked_of_their_own_settings_only(worlds: list[WorldRecord]) -> None:
+def test_claims_are_judged_only_under_their_own_settings(worlds: list[WorldRecord]) -> None:
     found = verdicts(worlds, EVERY)
     names = {v.claim for v in found}
     assert {"food weight positive", "two modes of action", "mean lifetime", "extinction"} <= names
     assert "action weight negative" not in names
     assert sum(v.claim == "extinction" for v in found) == 1  # at the baseline's own costs
-    assert {v.claim: v.verdict for v in found if v.verdict != "undecided"} == {"lifespan": "holds"}  # 5 windows alone
+    assert {v.claim: v.verdict for v in found if v.verdict != "undecided"} == {"lifespan": "holds"}  # only 5 windows
     changed = dataclasses.replace(worlds[0].config.food["normal"], growth_rate=0.3)
     config = dataclasses.replace(worlds[0].config, food={"normal": changed})
     assert verdicts([dataclasses.replace(world, config=config) for world in worlds], EVERY) == []
@@ -226,7 +226,7 @@ def test_claims_are_asked_of_their_own_settings_only(worlds: list[WorldRecord]) 
     assert [(v.claim, v.reported, v.verdict) for v in extinction] == [("extinction", "90 %", "holds")]
 
 
-def test_the_lifespan_is_that_of_the_hazard() -> None:
+def test_the_lifespan_follows_from_the_hazard() -> None:
     """Gompertz's law alone: exp(−α/β·(exp(β·t) − 1)) = 0.05 at t = ln(1 − β/α·ln 0.05)/β."""
     (rule,) = [c for c in CLAIMS if c.name == "lifespan"]
     hazard = load_config("baseline").species["agent"].hazard
@@ -241,7 +241,7 @@ def test_claims_that_the_paper_makes_have_a_rule() -> None:
         preset: {c.name for c in CLAIMS if c.condition.preset == preset} for preset in ("large", "poison", "baseline")
     }
     assert "food weight positive" in of["large"]
-    assert "food weight above 4" not in of["large"]  # it says "consistently positive" there
+    assert "food weight above 4" not in of["large"]  # the paper says "consistently positive" there
     assert {"poison weight positive", "poison weight below food"} <= of["poison"]
     assert {"food weight no random walk", "action weight no random walk", "lifespan"} <= of["baseline"]
     assert {(o.name, o.first.preset, o.second.preset) for o in ORDERS} >= {
