@@ -14,7 +14,7 @@ from hedon.record.founder import join, make_founders
 
 
 def lines(rng: np.random.Generator, birth: tuple[float, float], share: float = 0.5, *, count=40, steps=3000) -> Lines:
-    """One world in which the two groups have children at these chances and die at 1e-3."""
+    """One world in which the two groups give birth at these rates per step and die at 1e-3."""
     first = np.arange(count) < share * count
     rng.shuffle(first)
     rates = np.where(first, *birth)
@@ -27,7 +27,7 @@ def contest(rng: np.random.Generator, birth: tuple[float, float], worlds: int, s
 
 
 def test_a_known_difference_is_found_with_its_size() -> None:
-    # The log of the ratio changes by the difference of the rates of birth per step, and a generation takes one over
+    # The log of the ratio changes by the difference of the rates of birth per step, and a generation lasts one over
     # their mean: s = 2e-4 / 1e-3 per generation.
     found = contest(np.random.default_rng(1), (1.1e-3, 0.9e-3), 40)
     assert found.result.selection.low <= 0.2 <= found.result.selection.high
@@ -67,7 +67,7 @@ def test_worlds_that_are_lost_count_and_add_no_noise() -> None:
         np.testing.assert_array_equal(np.asarray(line.get_ydata()), each.share)
 
 
-def test_counts_are_those_of_the_pedigree() -> None:
+def test_counts_match_the_pedigree() -> None:
     rng = np.random.default_rng(3)
     first = [True, False, True, False]
     agents = birth_death_world({"w_normal": np.ones(4)}, lambda genes: np.full(4, 3e-3), rng, steps=1500)

@@ -1,4 +1,4 @@
-"""Distances between futures and between fresh worlds, and who has descendants in all futures."""
+"""Distances between futures and between fresh worlds, and which agents have descendants in all futures."""
 
 import math
 
@@ -23,7 +23,7 @@ def test_futures_half_as_far_apart_have_a_ratio_of_a_half() -> None:
     assert ratio == pytest.approx(0.5)
     assert low < 0.5 < high < 1
     assert p < 0.001
-    assert low * high == pytest.approx(0.25), "the interval is one of the logarithm"
+    assert low * high == pytest.approx(0.25), "the interval is symmetric in the logarithm"
 
 
 def test_worlds_that_end_alike_have_no_ratio() -> None:
@@ -56,16 +56,16 @@ def test_an_overlap_is_the_mean_over_all_pairs_of_futures() -> None:
     assert overlap(1, 10, "agent", shares, draws=1).overlap == pytest.approx(np.mean(pairs))
 
 
-def test_other_winners_in_each_future_overlap_less_than_by_chance() -> None:
+def test_different_winners_in_each_future_overlap_less_than_by_chance() -> None:
     found = overlap(1, 10, "agent", np.eye(6))
     assert found.overlap == 0
     assert found.p == 1
 
 
-def test_descent_is_counted_from_those_who_lived_at_the_step() -> None:
+def test_descent_is_counted_from_agents_alive_at_the_step() -> None:
     rows: dict[str, list[int | None]] = {
         "agent_id": [0, 1, 2, 3, 4, 5, 6],
-        # 0 died before step 10; 2 is a child of 1, and both live then, so each counts for itself.
+        # 0 died before step 10; 2 is a child of 1, and both are alive then, so each counts for itself.
         "parent_id": [None, None, 1, 2, 1, 3, None],
         "mate_id": [None, None, None, None, 6, None, None],
         "birth_step": [0, 0, 5, 12, 13, 20, 0],

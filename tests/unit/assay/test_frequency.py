@@ -1,4 +1,4 @@
-"""Fitness against frequency: a known dependence is found with its crossing, and none is found where there is none."""
+"""Fitness against frequency: a known dependence is found with its crossing, and none is found if there is none."""
 
 from collections.abc import Callable
 
@@ -20,7 +20,7 @@ AGENTS, GENERATIONS, PARTS = 2000, 12, 10
 def assay(
     rng: np.random.Generator, fitness: Callable[[Floats], Floats], seeds: int = 10, generations: int = GENERATIONS
 ) -> Frequency:
-    """Wright and Fisher's model: the odds are raised by exp(s(p)) per generation, of which each part is drawn anew."""
+    """The Wright-Fisher model: the odds are multiplied by exp(s(p)) per generation, in parts with a draw each."""
     mine: list[Floats] = [np.repeat(np.round(np.array(SHARES, np.float64) * AGENTS), seeds)]
     for _ in range(generations * PARTS):
         p = mine[-1] / AGENTS
@@ -66,7 +66,7 @@ def test_without_dependence_the_slope_is_0_and_nothing_crosses() -> None:
 
 
 @pytest.mark.long
-def test_neutral_groups_cross_nowhere_for_sure() -> None:
+def test_neutral_groups_have_no_certain_crossing() -> None:
     found = [assay(np.random.default_rng(trial), np.zeros_like).verdict for trial in range(100)]
     sure = sum(verdict in (COEXIST, EXCLUDE, NONE) for verdict in found)
     print(f"equal groups: {sure} of 100 are not open")
@@ -89,7 +89,7 @@ def test_shares_that_move_far_do_not_bend_the_line() -> None:
     assert found.shares[-1].end.value == pytest.approx(0.25, abs=0.05)
 
 
-def test_tables_and_figure_tell_the_numbers() -> None:
+def test_tables_and_figure_show_the_numbers() -> None:
     found = assay(np.random.default_rng(3), lambda p: 0.1 - 0.4 * p, seeds=2)
     assert np.isnan(found.slope.low), "no interval below three seeds"
     assert found.verdict == "open"
@@ -103,7 +103,7 @@ def test_tables_and_figure_tell_the_numbers() -> None:
 
 
 @pytest.mark.parametrize("text", ["0.5", "0.5,0.5", "0,0.5", "0.5,1", "a,b", "", "nan,0.5"])
-def test_shares_that_are_none_are_refused(text: str) -> None:
+def test_invalid_shares_are_refused(text: str) -> None:
     with pytest.raises(AssayError, match="two or more different shares between 0 and 1"):
         parse_shares(text, load_config("baseline"), ONLY)
 

@@ -1,4 +1,4 @@
-"""The landscape assay finds a fitness that is known, and nothing where there is none."""
+"""The landscape assay finds a known fitness, and nothing if there is none."""
 
 import numpy as np
 import polars as pl
@@ -58,7 +58,7 @@ def test_with_two_parents_each_has_half_of_a_child() -> None:
 
 
 def test_a_quadratic_fitness_is_found_with_intervals_that_cover() -> None:
-    # 5 + 0.1 x − 0.05 y − 0.02 x² − 0.015 y² + 0.01 xy descendants, by Poisson: all derivatives are known.
+    # Poisson descendants with mean 5 + 0.1 x − 0.05 y − 0.02 x² − 0.015 y² + 0.01 xy: all derivatives are known.
     truth = np.array([0.1, -0.05, -0.04, -0.03, 0.01])
     covered, optima = np.zeros(5), []
     trials = 60
@@ -74,8 +74,8 @@ def test_a_quadratic_fitness_is_found_with_intervals_that_cover() -> None:
     hessian = np.array([[truth[2], truth[4]], [truth[4], truth[3]]])
     peak = -np.linalg.solve(hessian, truth[:2])
     np.testing.assert_allclose(np.nanmedian(optima, axis=0), peak, atol=0.3)
-    # 95 % intervals: over all five coefficients, as many as a binomial law allows; a percentile interval of ten
-    # worlds would cover about 0.90.
+    # 95 % intervals: over all five coefficients, coverage within what a binomial law allows; percentile intervals from
+    # ten worlds would cover only about 0.90.
     low, high = stats.binom.interval(0.999, 5 * trials, 0.95)
     assert low <= covered.sum() <= high
 
@@ -131,12 +131,12 @@ def test_a_birth_death_process_with_known_rates_gives_its_surface() -> None:
 
 
 @pytest.mark.long
-def test_genes_that_do_nothing_are_found_to_do_something_once_in_twenty() -> None:
+def test_genes_without_effect_are_found_to_have_one_once_in_twenty() -> None:
     trials, found, flat, tests = 200, 0, 0, 0
     for trial in range(trials):
         rng = np.random.default_rng([7, trial])
         world = np.repeat(np.arange(6), 20)
-        # As skewed as numbers of descendants are, and of another scale in each world.
+        # As skewed as numbers of descendants, and on a different scale in each world.
         fitness = relative(rng.geometric(0.2, 120) * (rng.random(120) < 0.4) * (1.0 + world), world)
         z = rng.uniform(-8, 8, (120, 2))
         effects = gene_effects(("a", "b"), z, fitness, world, rng)

@@ -1,4 +1,4 @@
-"""Whether weights leave a start, stay, or drift."""
+"""Whether weights leave their starting point, stay or drift."""
 
 import math
 

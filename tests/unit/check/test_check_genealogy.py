@@ -1,4 +1,4 @@
-"""The rules on agents and their parents, by tables of three."""
+"""The rules on agents and their parents, checked on small tables."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ def family(rows: list[tuple[int, int | None, int | None, int]]) -> pl.DataFrame:
 
 @pytest.mark.parametrize("lost", [None, 1, 4])
 @pytest.mark.parametrize(("generation", "wrong"), [(3, False), (2, True), (4, True)])
-def test_a_generation_is_judged_where_both_parents_are_there(manifest, lost, generation, wrong):
+def test_a_generation_is_checked_only_if_both_parents_are_recorded(manifest, lost, generation, wrong):
     rows = [(0, None, None, 0), (1, None, None, 0), (2, 0, 1, 1), (4, 2, 1, 2), (5, 1, 4, generation)]
     agents = family([row for row in rows if row[0] != lost])
     found = [finding.what for finding in check_agents(agents, manifest, None, complete=False)]

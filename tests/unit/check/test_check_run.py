@@ -26,7 +26,7 @@ CUT, STEPS = 200, 500
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run of two worlds with frames, interrupted once, so that it has several parts of each table."""
+    """A run of two worlds with frames, interrupted once, so it has several parts of each table."""
     folder = tmp_path_factory.mktemp("whole") / "run"
     small_run(folder, CUT, frames=37)
     resume(folder, STEPS)
@@ -35,7 +35,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def run(whole: Path, tmp_path: Path) -> Path:
-    """A copy of it, to be damaged."""
+    """A copy of the whole run, to be damaged."""
     return Path(shutil.copytree(whole, tmp_path / "run"))
 
 
@@ -58,7 +58,7 @@ def flip(path: Path, at: int | None = None) -> None:
 
 
 def flip_number(path: Path) -> None:
-    """Flips a bit of a number in the largest array of a checkpoint: elsewhere, a byte may be one that nobody reads."""
+    """Flips a bit of a number in the largest array of a checkpoint; elsewhere, a byte may be one that is never read."""
     with zipfile.ZipFile(path) as archive:
         largest = max(archive.infolist(), key=lambda each: each.file_size)
     flip(path, largest.header_offset + largest.file_size // 2)
@@ -72,7 +72,7 @@ def test_an_untouched_run_passes(whole: Path) -> None:
 
 @dataclass(frozen=True)
 class Damage:
-    """What is done to a folder, and what must be said of it."""
+    """A kind of damage to a folder, and what must be reported."""
 
     do: Callable[[Path], object]
     said: str
@@ -259,7 +259,7 @@ def test_damage_to_rows_is_named_also_without_checkpoints(
     assert re.search(said, findings(run)), findings(run)
 
 
-def test_a_cycle_of_several_is_told(run: Path) -> None:
+def test_a_cycle_of_several_ancestors_is_reported(run: Path) -> None:
     def close(rows: pl.DataFrame) -> pl.DataFrame:
         child = rows.drop_nulls("parent_id").row(0, named=True)
         is_parent = (pl.col("world") == child["world"]) & (pl.col("agent_id") == child["parent_id"])
@@ -271,7 +271,7 @@ def test_a_cycle_of_several_is_told(run: Path) -> None:
     assert re.search(r"an agent is its own ancestor: (\d+) → (\d+ → )+\1", findings(run))
 
 
-def test_what_is_usable_is_told(run: Path) -> None:
+def test_usable_files_are_listed(run: Path) -> None:
     flip(part_paths(run, "agents")[-1], at=4)
     usable = "\n".join(check_run(run).usable)
     assert re.search(r"^agents: (\d+) of (?!\1)\d+ files are undamaged", usable)
@@ -302,8 +302,8 @@ def test_a_branch_and_a_killed_run_pass(run: Path, tmp_path: Path) -> None:
     assert any("is still running, or was killed" in note for note in verdict.notes)
 
 
-def test_a_replay_finds_what_was_not_computed(run: Path) -> None:
-    """Rows that agree with one another, their digest too, and that no simulation made."""
+def test_a_replay_finds_rows_that_were_not_simulated(run: Path) -> None:
+    """Rows that agree with each other and with their digest, but come from no simulation."""
     from hedon.record.digest import records_digest
     from hedon.record.manifest import load_manifest
 
@@ -315,7 +315,7 @@ def test_a_replay_finds_what_was_not_computed(run: Path) -> None:
     assert "rows differ" in replay_run(run)[0][0].what
 
 
-def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
+def test_a_folder_without_a_run_is_refused(tmp_path: Path) -> None:
     for folder, problem in ((tmp_path, "is not a run folder"), (tmp_path / "nowhere", "does not exist")):
         with pytest.raises(RecordError, match=problem):
             check_run(folder)

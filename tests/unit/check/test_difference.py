@@ -1,4 +1,4 @@
-"""Two runs are compared: settings, and the first window and quantity in which their worlds part."""
+"""Comparing two runs: their settings, and the first window and quantity in which their worlds diverge."""
 
 import shutil
 from dataclasses import replace
@@ -30,7 +30,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_equal_runs_are_equal_also_where_one_is_longer(runs):
+def test_equal_runs_are_equal_even_if_one_is_longer(runs):
     code, text = said(runs / "a", runs / "again")
     assert code == 0, text
     assert f"seed 1: equal up to step {4 * WINDOW}" in text
@@ -40,10 +40,10 @@ def test_equal_runs_are_equal_also_where_one_is_longer(runs):
 
 
 @pytest.mark.parametrize("steps", [2 * WINDOW, 2 * WINDOW + 20])
-def test_an_unchanged_branch_is_equal_from_its_beginning_on(runs, tmp_path, steps):
+def test_an_unchanged_branch_is_equal_from_its_start_on(runs, tmp_path, steps):
     small_run(tmp_path / "part", steps)
     branch(tmp_path / "part", tmp_path / "branch", steps=4 * WINDOW, threads=1)
-    assert open_run(runs / "a").agents().filter(pl.col("death_step") <= steps).height, "some die before it begins"
+    assert open_run(runs / "a").agents().filter(pl.col("death_step") <= steps).height, "some die before it starts"
     for pair in ((runs / "a", tmp_path / "branch"), (tmp_path / "branch", runs / "a")):
         code, text = said(*pair)
         assert code == 0, text
@@ -71,7 +71,7 @@ def test_runs_that_end_within_a_window_are_equal_as_far_as_they_go(runs, tmp_pat
         assert {each.until for each in found.partings} == {steps}
 
 
-def test_the_first_window_and_quantity_that_part_are_named(runs, tmp_path):
+def test_the_first_window_and_quantity_that_differ_are_named(runs, tmp_path):
     shutil.copytree(runs / "a", tmp_path / "changed")
     late = (pl.col("world") == 1) & (pl.col("step") >= 3 * WINDOW)
     change(tmp_path / "changed", "population", late, "births", 77)
@@ -84,7 +84,7 @@ def test_the_first_window_and_quantity_that_part_are_named(runs, tmp_path):
     assert f"seed 2: part in the window that ends at step {3 * WINDOW}: births " in text
 
 
-def test_a_life_that_differs_is_found_where_all_windows_agree(runs, tmp_path):
+def test_a_life_that_differs_is_found_even_if_all_windows_agree(runs, tmp_path):
     shutil.copytree(runs / "a", tmp_path / "changed")
     change(tmp_path / "changed", "agents", (pl.col("world") == 0) & (pl.col("agent_id") == 3), "w_action", 0.25)
     (first, second) = compare_runs(runs / "a", tmp_path / "changed").partings
@@ -93,7 +93,7 @@ def test_a_life_that_differs_is_found_where_all_windows_agree(runs, tmp_path):
     assert "at agent 3, born at step 0; all windows are equal: w_action " in said(runs / "a", tmp_path / "changed")[1]
 
 
-def test_settings_versions_seeds_and_ends_are_told(runs, tmp_path):
+def test_settings_versions_seeds_and_ends_are_reported(runs, tmp_path):
     small_run(tmp_path / "other", 2 * WINDOW, seeds=(2, 5), overrides=("food.normal.growth_rate=0.5",))
     code, text = said(runs / "a", tmp_path / "other")
     assert code == 1
@@ -104,7 +104,7 @@ def test_settings_versions_seeds_and_ends_are_told(runs, tmp_path):
     manifest = load_manifest(tmp_path / "later")
     save_manifest(tmp_path / "later", replace(manifest, hedon_version="9.9"))
     code, text = said(runs / "a", tmp_path / "later")
-    assert code == 0, "versions explain, and are no difference by themselves"
+    assert code == 0, "versions are listed but are no difference by themselves"
     assert '-> "9.9"' in text
     digests = ("0" * len(manifest.world_digests[0]), *manifest.world_digests[1:])
     save_manifest(tmp_path / "later", replace(manifest, world_digests=digests))
@@ -113,7 +113,7 @@ def test_settings_versions_seeds_and_ends_are_told(runs, tmp_path):
     assert "seed 1: equal up to step 256, but their states at the end differ" in text
 
 
-def test_species_part_each_by_itself(tmp_path):
+def test_species_are_compared_separately(tmp_path):
     from hedon.config import load_config
     from hedon.experiment.plan import RunPlan
     from hedon.experiment.run import run
@@ -126,6 +126,6 @@ def test_species_part_each_by_itself(tmp_path):
     assert (found.species, found.step, found.values["births"][1]) == ("predator", WINDOW, 99)
 
 
-def test_a_folder_without_a_run_is_trouble(runs, tmp_path):
+def test_a_folder_without_a_run_is_an_error(runs, tmp_path):
     done = CliRunner().invoke(app, ["check", str(runs / "a"), "--against", str(tmp_path)])
-    assert "RecordError" in repr(done.exception), "which ends in exit code 2"
+    assert "RecordError" in repr(done.exception), "the command exits with code 2"

@@ -38,7 +38,7 @@ def test_cumulative_hazard_is_the_integral_of_the_hazard(config: HazardConfig, e
 @pytest.mark.parametrize("energy", ENERGIES)
 def test_the_lifetime_is_the_integral_of_survival(config: HazardConfig, energy: float) -> None:
     mean = float(life.expected_lifetime(config, energy))
-    # In units of the mean, so that the integrand has no scale of its own.
+    # In units of the mean, so the integrand has no scale of its own.
     whole, _ = quad(lambda x: mean * float(life.survival(config, x * mean, energy)), 0, 60, limit=500)
     assert mean == pytest.approx(whole, rel=1e-7)
     children = float(life.birth_rate(BIRTH, energy)) * whole

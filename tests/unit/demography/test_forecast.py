@@ -38,7 +38,7 @@ def test_the_papers_setting_lives_without_eating() -> None:
     assert populations[-1] == 200
 
 
-def test_births_that_follow_another_store_are_those_of_who_is_full_of_it() -> None:
+def test_births_that_follow_another_store_are_forecast_for_agents_full_of_it() -> None:
     water = ("store.water={capacity=20, basic_cost=0.01}", "food.normal.gives.water=1", "energy.birth_weight=0")
     by_water = setting(*water, "store.water.birth_weight=2").species["agent"]
     energy = np.array([0.0, 7.0])
@@ -50,12 +50,12 @@ def test_births_that_follow_another_store_are_those_of_who_is_full_of_it() -> No
     lively = warnings(*water, "store.water.birth_weight=2", "birth.form=threshold", "birth.logit_offset=3")
     assert "Births follow water too: R0 here is that of agents full of water." in lively
     assert "cannot live" not in lively
-    assert "without eating" not in lively, "who eats nothing has no water"
+    assert "without eating" not in lively, "an agent that eats nothing has no water"
     assert "agents without water." in warnings(*water, "store.water.birth_weight=-2")
 
 
 def test_room_and_refusals_meet() -> None:
-    """At the number that room allows, the chance of a place is 1/R0."""
+    """At the population that room allows, the chance of finding a place is 1/R0."""
     found = forecast(setting())
     level = found.levels[2]
     alive, success = zip(*((room.alive, room.success) for room in found.room), strict=True)
@@ -106,7 +106,7 @@ def rim(count: int) -> np.ndarray:
     return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def test_free_places_are_those_of_the_engines_rules() -> None:
+def test_free_places_follow_the_engines_rules() -> None:
     config = setting("arena.inner_walls=[[200.0, 100.0, 200.0, 200.0]]")
     rng = np.random.default_rng(3)
     places = rng.uniform(-20, 500, (3000, 2))
@@ -125,8 +125,8 @@ def test_free_places_are_those_of_the_engines_rules() -> None:
     assert is_free(config, 10.0, at, nothing, at[:1]).tolist() == [False, True, True, False, True]
 
 
-def test_a_hazard_that_follows_time_is_taken_at_its_mean_and_its_range() -> None:
-    """The mean over a period is exact; at each end of the range, lives are those of that factor."""
+def test_a_hazard_on_a_schedule_is_forecast_at_its_mean_and_range() -> None:
+    """The mean over a period is exact; at each end of the range, lifetimes are those at that factor."""
     year = "hazard.schedule.scale={points=[[0, 0.5], [300, 2.0]], period=1000}"
     config, plain = load_config("baseline", overrides=[year]), load_config("baseline")
     mean = 0.3 * 0.5 + 0.7 * 2.0
@@ -151,7 +151,7 @@ def test_what_a_store_adds_to_the_hazard_follows_its_schedule() -> None:
     assert higher("hazard.schedule.scale.points=[[0, 10.0]]") == pytest.approx(10.0 * higher(), rel=0.01)
 
 
-def test_scaled_chances_are_those_of_the_hazard_times_the_factor() -> None:
+def test_scaled_chances_are_the_hazard_times_the_factor() -> None:
     config = load_config("baseline").species["agent"].hazard
     for age, energy in ((0.0, 0.0), (50_000.0, 5.0), (900_000.0, 100.0)):
         expected = 3.0 * float(hazard(config, age, energy))
@@ -160,14 +160,14 @@ def test_scaled_chances_are_those_of_the_hazard_times_the_factor() -> None:
 
 @pytest.mark.parametrize("form", ["steps", "linear"])
 @pytest.mark.parametrize("period", [0, 997])
-def test_the_mean_of_a_schedule_is_that_of_its_steps(form: str, period: int) -> None:
+def test_the_mean_of_a_schedule_is_the_mean_over_its_steps(form: str, period: int) -> None:
     points = ((0, 0.3), (100, 1.7), (613, 0.9))
     schedules = {"scale": ScheduleConfig(points=points, form=form, period=period)}  # pyright: ignore[reportArgumentType]
     expected = factor_at(schedules, "scale", np.arange(period)).mean() if period else 0.9
     assert mean_factor(schedules, "scale") == pytest.approx(expected, rel=1e-12)
 
 
-def test_growth_that_follows_time_is_told_with_its_range() -> None:
+def test_growth_on_a_schedule_is_reported_with_its_range() -> None:
     growth = "food.normal.schedule.growth_rate={points=[[0, 0.1], [500, 2.0]], period=1000}"
     found = forecast(load_config("baseline", overrides=[growth]))
     plain = forecast(load_config("baseline"))
@@ -178,7 +178,7 @@ def test_growth_that_follows_time_is_told_with_its_range() -> None:
     assert f"is enough for {0.1 * plain.fed:,.0f} of" in short, "at the start growth is at its lowest"
 
 
-def test_what_is_said_fits_what_a_species_eats() -> None:
+def test_warnings_fit_what_a_species_eats() -> None:
     config = load_config("predator")
     said = {name: " ".join(setting_warnings(config, name)) for name in config.species}
     assert "It eats no food, but prey" in said["predator"]
@@ -187,5 +187,5 @@ def test_what_is_said_fits_what_a_species_eats() -> None:
     assert math.isnan(forecast(config, "predator").fed)
 
 
-def test_a_fresh_force_is_that_of_the_motors() -> None:
+def test_a_fresh_force_scales_with_the_motors() -> None:
     assert fresh_force(MotorConfig(force_scale=1.5)) == pytest.approx(1.5 * fresh_force(MotorConfig()))

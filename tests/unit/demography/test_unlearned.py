@@ -1,4 +1,4 @@
-"""What is eaten before agents learn, and the equilibria: closed cases, and directions that must hold."""
+"""What agents eat before they learn, and the equilibria: closed forms, and directions that must hold."""
 
 import math
 
@@ -27,7 +27,7 @@ def around(sd: float, *overrides: str) -> Config:
 
 
 def test_where_food_grows_decides_how_much_is_eaten() -> None:
-    """A world with sd 2 and one first food eats 20 to 25 times less than one with sd 200."""
+    """A world with sd 2 and one initial food eats 20 to 25 times less than one with sd 200."""
     narrow, wide = (forecast(around(sd, "food.normal.initial_count=1")).intake[0] for sd in (2.0, 200.0))
     assert narrow.places < 5
     assert wide.places == 100
@@ -45,8 +45,8 @@ def test_a_world_that_has_no_room_for_its_first_foods_cannot_start() -> None:
     assert missing_at_start(setting(), np.random.default_rng(1)) == ""
 
 
-def test_the_walk_of_agents_that_have_not_learned_is_that_of_the_engine() -> None:
-    """Alone in the arena: how far agents are from a wall, on average, at some times."""
+def test_the_walk_of_unlearned_agents_agrees_with_the_engine() -> None:
+    """In an arena without food: the mean distance of agents from the nearest wall at several times."""
     alone = ("food.normal.growth_rate=0", "food.normal.initial_count=0", "birth.kappa=0", "hazard.kappa=0")
     config = setting(*alone, "hazard.alpha_age=0", "learning.policy=random", "population.initial_count=12")
     size = np.array([480.0, 360.0])
@@ -68,7 +68,7 @@ def test_the_walk_of_agents_that_have_not_learned_is_that_of_the_engine() -> Non
 
 
 def test_agents_in_the_open_sweep_the_width_of_their_mouth() -> None:
-    """In a wide arena walls do not matter: the rate is speed times width of the mouth per area."""
+    """In a wide arena walls do not matter: the rate is speed times mouth width divided by area."""
     config = setting("arena.width=6000", "arena.height=6000", "food.normal.capacity=1000")
     own, rng = config.species["agent"], np.random.default_rng(1)
     places = rng.uniform(500, 5500, (1500, 2))

@@ -41,7 +41,7 @@ def test_directions_of_the_mean_head_are_uniform():
     assert heads.var() == pytest.approx(1 / 64, rel=1e-3)
 
 
-def test_every_agent_has_its_own_and_the_same_each_time():
+def test_every_agent_has_its_own_reproducible_network():
     one = learning.init_network(ONE_KIND_RAW, 1, 2, 3)
     np.testing.assert_array_equal(one, learning.init_network(ONE_KIND_RAW, 1, 2, 3))
     others = [(0, 2, 3), (1, 0, 3), (1, 2, 0)]

@@ -1,4 +1,4 @@
-"""Measures: one entry in the catalogue is seen wherever numbers of worlds are shown."""
+"""Measures: one entry in the catalog appears wherever numbers of worlds are shown."""
 
 import io
 import math
@@ -31,7 +31,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_run(tmp_path_factory.mktemp("measure") / "run", intervals=10, worlds=3)
 
 
-def test_one_entry_is_seen_in_summary_table_comparison_and_claims(
+def test_one_entry_appears_in_summary_table_comparison_and_claims(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def crowd(world: WorldRecord) -> int:
@@ -66,11 +66,11 @@ def test_one_entry_is_seen_in_summary_table_comparison_and_claims(
     claim = Claim("crowded", Condition("baseline"), "many live at once", MEASURES["crowd"].of, "mean", "> 0", low=0.0)
     assert judge(claim, "baseline", read_worlds([run])).value == pytest.approx(sum(expected) / 3)
 
-    asked = at_common_age((MEASURES["crowd"],), 0.0)  # as studies and their claims ask for it
+    asked = at_common_age((MEASURES["crowd"],), 0.0)  # as in studies and their claims
     assert [measured(world, asked)["crowd"] for world in read_worlds([run])] == expected
 
 
-def test_a_number_that_is_no_ratio_or_not_finite_is_none(folder: Path) -> None:
+def test_a_ratio_of_zero_and_a_number_that_is_not_finite_are_none(folder: Path) -> None:
     [world, *_] = read_worlds([open_run(folder)])
     assert Measure("m", "t", lambda _: 0.0, ratio=True).value(world) is None
     assert Measure("m", "t", lambda _: math.nan).value(world) is None

@@ -1,4 +1,4 @@
-"""Measures that a config adds: seen wherever those of the catalogue are, and checked before anything is run."""
+"""Measures that a config adds: shown wherever those of the catalog are, and checked before anything runs."""
 
 from pathlib import Path
 
@@ -45,7 +45,7 @@ def config_of(folder: Path, preset: str = "baseline", text: str = OWN) -> Config
 
 
 @pytest.mark.parametrize("preset", ["baseline", "predator"])
-def test_a_measure_of_a_config_is_seen_in_summaries_tables_comparisons_and_claims(tmp_path: Path, preset: str) -> None:
+def test_a_measure_of_a_config_appears_in_summaries_tables_comparisons_and_claims(tmp_path: Path, preset: str) -> None:
     config = config_of(tmp_path, preset)
     for name, cost in (("a", 0.001), ("b", 0.01)):
         run(RunPlan(config.with_("energy.basic_cost", cost), (1, 2, 3), 192, tmp_path / name))
@@ -119,7 +119,7 @@ def test_a_measure_changes_no_digest_and_is_kept(tmp_path: Path) -> None:
         ('[measure.rate]\nvalue = "sum(births)"', r"measure\.rate\.value"),
     ],
 )
-def test_what_is_wrong_with_a_measure_is_named_before_a_run(tmp_path: Path, text: str, says: str) -> None:
+def test_a_faulty_measure_is_refused_before_a_run(tmp_path: Path, text: str, says: str) -> None:
     with pytest.raises(ConfigError, match=says):
         RunPlan(config_of(tmp_path, text=text), (1,), 64, tmp_path / "run")
     assert not (tmp_path / "run").exists()
