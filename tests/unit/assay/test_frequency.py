@@ -62,7 +62,6 @@ def test_without_dependence_the_slope_is_0_and_nothing_crosses() -> None:
     assert all(share.selection.value > 0 for each in found for share in each.shares)
     assert found[-1].verdict == NONE
     assert np.isnan(found[-1].crossing.value)
-    assert found[-1].verdict == NONE
 
 
 @pytest.mark.long
