@@ -1,4 +1,4 @@
-"""What must hold of a world is looked at when its window ends: each thing that is made wrong is named."""
+"""The invariants of a world are audited at the end of each window, and every violation is named."""
 
 from contextlib import nullcontext
 
@@ -17,7 +17,7 @@ PLACES = [(100, 100, 0.0), (200, 100, 1.0), (300, 100, 2.0), (240, 180, 3.0), (1
 
 @pytest.fixture
 def world() -> Simulation:
-    """Five agents that hardly move and one food, a step before the end of a window."""
+    """Five agents that hardly move and one food item, one step before the end of a window."""
     simulation = make_simulation(*SAFE)
     set_scene(simulation, PLACES, [(400, 300)])
     simulation.run(WINDOW - 1)
@@ -36,7 +36,7 @@ def test_a_sound_world_passes(world):
     world.run(3 * WINDOW)
 
 
-def test_a_body_in_another_is_named(world):
+def test_a_body_inside_another_is_named(world):
     for axis, value in (("x", 200.0), ("y", 106.0)):
         poke(world, f"physics.bodies.{axis}", slot_of(world, 4), value)
     with pytest.raises(
@@ -45,7 +45,7 @@ def test_a_body_in_another_is_named(world):
         world.run(1)
 
 
-def test_a_body_in_a_food_is_named(world):
+def test_a_body_inside_a_food_is_named(world):
     for axis, value in (("x", 400.5), ("y", 300.0)):
         poke(world, f"physics.bodies.{axis}", slot_of(world, 2), value)
         poke(world, "physics.bodies.angle", slot_of(world, 2), 1.5 * np.pi)  # its mouth is on the other side
@@ -53,8 +53,8 @@ def test_a_body_in_a_food_is_named(world):
         world.run(1)
 
 
-def test_a_body_where_a_food_was_eaten_is_sound():
-    """The food is seen once more, and nothing is there: a child may be born in its place."""
+def test_a_body_in_the_place_of_an_eaten_food_is_sound():
+    """The food is seen for one more step although it is gone, so a child may be born in its place."""
     world = make_simulation(*SAFE, 'world.eaten_food="seen"')
     set_scene(world, PLACES, [(400, 300)])
     world.run(WINDOW - 1)
@@ -67,8 +67,8 @@ def test_a_body_where_a_food_was_eaten_is_sound():
 
 
 @pytest.mark.parametrize("apart", [4.9, 5.1])
-def test_the_solver_jacobi_may_leave_deep_overlaps(apart):
-    """As jams leave them; a quarter of the distance of a touch is the bound. Nothing corrects the overlap here."""
+def test_the_jacobi_solver_may_leave_deep_overlaps(apart):
+    """Jams cause them. The bound is a quarter of the contact distance; nothing corrects the overlap here."""
     world = make_simulation(*SAFE, 'physics.solver="jacobi"', "physics.correction_rate=0")
     set_scene(world, [(100, 100, 0.0), (100 + apart, 100, 1.0)])
     too_deep = pytest.raises(EngineError, match=r"overlap_too_deep.*step 64, value 15\.[01]")
@@ -84,7 +84,7 @@ def test_a_body_beyond_the_walls_is_outside(world, axis, value):
 
 
 def test_a_body_in_a_corner_is_outside(world):
-    """Within the rectangle, and yet beyond the chords of a rounded corner."""
+    """Inside the rectangle, but beyond the chords of a rounded corner."""
     for axis in ("x", "y"):
         poke(world, f"physics.bodies.{axis}", slot_of(world, 3), 1.0)
     with pytest.raises(EngineError, match=r"outside_arena.*value -\d\.\d+, agent 3"):
@@ -111,7 +111,7 @@ def test_a_slot_held_twice_is_named(world):
 
 
 @pytest.mark.parametrize(("path", "index", "value"), [("free", 0, 0), ("alive", 150, 1), ("free_count", 0, 3)])
-def test_slots_that_do_not_fit_are_named(world, path, index, value):
+def test_inconsistent_slots_are_named(world, path, index, value):
     poke(world, path, index, value)
     with pytest.raises(EngineError, match="slots_inconsistent"):
         world.run(1)
@@ -121,7 +121,7 @@ def test_slots_that_do_not_fit_are_named(world, path, index, value):
     ("path", "agent", "value"),
     [("agent_id", 2, 0), ("agent_id", 4, 99), ("parent_id", 3, 3), ("birth_step", 1, 65), ("death_step", 1, 5)],
 )
-def test_ids_that_cannot_be_are_named(world, path, agent, value):
+def test_impossible_ids_are_named(world, path, agent, value):
     poke(world, f"life.{path}", slot_of(world, agent), value)
     with pytest.raises(EngineError, match=r"ids_inconsistent.*agent"):
         world.run(1)
@@ -144,7 +144,7 @@ def test_energy_from_nowhere_is_named(world, path):
         world.run(1)
 
 
-def test_lists_beyond_their_room_are_named(world):
+def test_lists_beyond_their_capacity_are_named(world):
     bodies = int(world.worlds[0].view("physics.neighbors.head.bodies")[0])
     poke(world, "physics.neighbors.circles.start", bodies, -1)
     with pytest.raises(EngineError, match="neighbor_overflow"):
@@ -160,7 +160,7 @@ def test_more_deaths_than_the_buffer_holds_are_named(world, path, count):
 
 
 def test_a_crowd_overlaps_far_less_than_the_bound():
-    """What contacts leave in a full small arena is below a tenth of what is taken as an error."""
+    """In a full small arena, contacts leave less than a tenth of the overlap that counts as an error."""
     crowd = ("population.initial_count=140", "birth.kappa=0.02", "birth.attempts=100", *QUICK, *DEATHLESS)
     simulation = make_simulation(*crowd, preset="small")
     deepest = 0.0

@@ -1,4 +1,4 @@
-"""What the caller's process does to a simulation, and the other way round: floating-point modes, forks, Ctrl-C."""
+"""How the calling process and a simulation affect each other: floating-point modes, forks, Ctrl-C."""
 
 import ctypes
 import hashlib
@@ -22,8 +22,8 @@ from hedon.config.load import load_config
 from hedon.error import EngineError
 
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
-STEPS = 150  # two windows of 64 and a rest
-MXCSR = 28  # where glibc's fenv_t keeps the control register of SSE, on x86-64 [byte]
+STEPS = 150  # two windows of 64 steps and a remainder
+MXCSR = 28  # offset of the SSE control register in glibc's fenv_t on x86-64 [byte]
 ROUNDING = {"down": 0x2000, "up": 0x4000, "to zero": 0x6000}
 FLUSHING = {"flush to zero": 0x8000, "denormals are zero": 0x0040}
 TRAPS = {"exceptions unmasked": 0x0E00}  # the bits that mask division by zero, overflow and underflow, inverted below
@@ -51,13 +51,13 @@ def control(bits: int) -> Iterator[None]:
     set_control_register(before ^ bits)
     try:
         yield
-        assert (control_register() ^ before ^ bits) & ~0x3F == 0, "the caller's mode is as it was, but for sticky flags"
+        assert (control_register() ^ before ^ bits) & ~0x3F == 0, "the caller's mode changed by more than sticky flags"
     finally:
         set_control_register(before)
 
 
 def life(threads: int) -> list[str]:
-    """Digests of all that can be done with a simulation: made, run, saved, restored, given a scene."""
+    """Digests after each operation on a simulation: creating, running, saving and restoring it, setting a scene."""
     simulation = make_simulation(*LIVELY, preset="relocation", threads=threads)
     world = simulation.worlds[0]
     digests = [world.digest()]
@@ -75,7 +75,7 @@ def life(threads: int) -> list[str]:
 
 @needs_sse
 @pytest.mark.parametrize("mode", [*ROUNDING, *FLUSHING, *TRAPS])
-def test_the_callers_floating_point_mode_changes_no_bit_and_is_given_back(mode):
+def test_the_callers_floating_point_mode_changes_no_bit_and_is_restored(mode):
     plain = life(1)
     bits = {**ROUNDING, **FLUSHING, **TRAPS}[mode]
     for threads in (1, 2):
@@ -84,15 +84,15 @@ def test_the_callers_floating_point_mode_changes_no_bit_and_is_given_back(mode):
 
 
 @needs_sse
-def test_the_test_above_would_see_a_mode():
-    """A third does not have the same float32 in all modes, so a missing guard would show."""
+def test_the_test_above_would_detect_a_mode():
+    """One third rounds to different float32 values in different modes, so a missing guard would show."""
     with control(ROUNDING["down"]):
         down = np.float32(1.0) / np.float32(3.0)
     assert down != np.float32(1.0) / np.float32(3.0)
 
 
 def test_denormals_change_no_bit():
-    """Adam's moments fade below what a float32 holds; epochs are many here, so that they do so in three windows."""
+    """Adam's moments decay below the range of float32; with this many epochs, they do so within three windows."""
     settings = (
         "world.rollout_steps=64",
         "learning.minibatch_size=16",
@@ -107,7 +107,7 @@ def test_denormals_change_no_bit():
     for engine in (flushed, kept):
         engine.run(4 * 64)
     moments = flushed.view(0, "first_moment")
-    assert ((moments == 0) & (flushed.view(0, "second_moment") > 0)).any(), "moments faded away"
+    assert ((moments == 0) & (flushed.view(0, "second_moment") > 0)).any(), "no moment decayed to zero"
     for name in ("first_moment", "second_moment"):
         size = np.abs(kept.view(0, name))
         assert size[size > 0].min() > 1e-30
@@ -118,7 +118,7 @@ def test_denormals_change_no_bit():
 @pytest.mark.parametrize("preset", ["baseline", "small", "poison"])
 @pytest.mark.parametrize("kernel", _engine.kernel.kernel_names())
 def test_denormals_change_no_bit_over_twenty_windows(preset, kernel):
-    """As long as it takes for moments to fade at the settings of the paper; AVX2 and AVX-512 agree there, too."""
+    """Long enough for moments to decay with the settings of the paper; AVX2 and AVX-512 also agree there."""
     given = engine_input(load_config(preset))
     digests = set()
     for flush, name in [(True, kernel), (False, kernel), (True, "avx2" if kernel == "avx512" else kernel)]:
@@ -129,7 +129,7 @@ def test_denormals_change_no_bit_over_twenty_windows(preset, kernel):
 
 
 def in_child(report, work) -> None:
-    """Runs in a forked process: tells what `work` ended with, then leaves the usual way."""
+    """Runs in a forked process: reports how `work` ended, then exits normally."""
     try:
         work()
         report.put("went through")
@@ -139,7 +139,7 @@ def in_child(report, work) -> None:
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")
-def test_a_forked_child_is_refused_by_name_and_ends(threads):
+def test_a_forked_child_gets_a_clear_error_and_exits(threads):
     context = multiprocessing.get_context("fork")
     simulation = make_simulation(*LIVELY, threads=threads)
     simulation.run(10)
@@ -156,10 +156,10 @@ def test_a_forked_child_is_refused_by_name_and_ends(threads):
         child.start()
         said = report.get(timeout=20)
         child.join(timeout=20)
-        assert not child.is_alive(), "it hangs at its exit"
+        assert not child.is_alive(), "the child hangs on exit"
         assert child.exitcode == 0
         assert said.startswith("EngineError: this process was forked")
-    simulation.run(10)  # the parent's is as it was
+    simulation.run(10)  # the parent's simulation is unaffected
     assert simulation.worlds[0].step == 20
 
 
@@ -188,14 +188,14 @@ def test_a_forked_child_can_drop_the_simulation_and_make_its_own():
 
 @pytest.fixture
 def ctrl_c() -> Iterator[None]:
-    """Python's own answer to Ctrl-C, also where the tests were started in the background, which ignores it."""
+    """Python's default Ctrl-C handler, even if the tests run in the background, where Ctrl-C is ignored."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.usefixtures("ctrl_c")
-def test_ctrl_c_is_heard_while_a_simulation_steps_and_its_state_is_kept():
+def test_ctrl_c_interrupts_a_simulation_and_its_state_is_kept():
     simulation = make_simulation("learning.update_epochs=0", threads=1)
     simulation.run(300)
     pressed = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
@@ -206,7 +206,7 @@ def test_ctrl_c_is_heard_while_a_simulation_steps_and_its_state_is_kept():
     heard = time.monotonic() - begun - 0.5
     step = simulation.worlds[0].step
     assert 300 < step < 10_000_000
-    assert heard < 2.0, "0.3 s on a quiet machine"
+    assert heard < 2.0, "it takes 0.3 s on an idle machine"
     simulation.run(77)
     assert simulation.worlds[0].step == step + 77
     other = make_simulation("learning.update_epochs=0", threads=1)
@@ -214,7 +214,7 @@ def test_ctrl_c_is_heard_while_a_simulation_steps_and_its_state_is_kept():
     assert other.worlds[0].digest() == simulation.worlds[0].digest()
 
 
-def test_a_handler_of_the_callers_is_called_while_a_simulation_steps():
+def test_a_callers_signal_handler_is_called_during_a_run():
     simulation = make_simulation("learning.update_epochs=0", threads=1)
     heard = []
     before = signal.signal(signal.SIGUSR1, lambda *_: heard.append(time.monotonic()))
@@ -222,7 +222,7 @@ def test_a_handler_of_the_callers_is_called_while_a_simulation_steps():
         threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGUSR1)).start()
         simulation.run(15_000)
         assert heard
-        assert time.monotonic() - heard[0] > 0.2, "it was called in the midst of the run"
+        assert time.monotonic() - heard[0] > 0.2, "the handler was not called until the end of the run"
     finally:
         signal.signal(signal.SIGUSR1, before)
 

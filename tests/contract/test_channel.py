@@ -1,4 +1,4 @@
-"""Channels: what is paid for, observed, or opens a gate, by name; and what is refused of it."""
+"""Channels that are paid for, observed or used as a gate by name, and the names that are refused."""
 
 import math
 
@@ -18,13 +18,13 @@ FERTILE = (*QUICK, *DEATHLESS, *ALIKE, "birth.kappa=0.2", "birth.beta=100", "pop
 
 
 def pay(channel: str, name: str = "it") -> tuple[str, ...]:
-    """A term whose weight is 1 for everybody."""
+    """A term whose weight is 1 for every agent."""
     gene = f"reward.pay.{name}.gene"
     return (f"reward.pay.{name}.channel={channel}", f"{gene}.initial_mean=1", f"{gene}.initial_sd=0")
 
 
 def rewards(simulation: Simulation, step: int) -> np.ndarray:
-    """What each of the living was paid in a step of the first window."""
+    """The reward of each living agent in a step of the first window."""
     world = simulation.worlds[0]
     return world.view("reward").reshape(len(world.view("alive")), -1)[world.living, step].astype(float)
 
@@ -50,7 +50,7 @@ def test_a_parent_is_paid_for_its_child_one_step_later() -> None:
     assert paid > 20
 
 
-def test_what_a_step_brought_is_observed_in_the_next_one_and_by_newborns_as_0() -> None:
+def test_the_results_of_a_step_are_observed_in_the_next_one_and_as_0_by_newborns() -> None:
     simulation = make_simulation(*FERTILE, "sensor.observes.moved=0.5", "sensor.observes.energy_change=0.1")
     world = simulation.worlds[0]
     assert not observed(simulation, "moved", "energy_change").any()
@@ -70,7 +70,7 @@ def test_what_a_step_brought_is_observed_in_the_next_one_and_by_newborns_as_0() 
 
 
 @pytest.mark.parametrize(("channel", "array", "wrong"), [("births", "births", -1), ("moved", "last", np.nan)])
-def test_what_is_kept_of_a_step_survives_a_checkpoint(channel: str, array: str, wrong: float) -> None:
+def test_values_kept_from_a_step_survive_a_checkpoint(channel: str, array: str, wrong: float) -> None:
     settings = (*FERTILE, f"sensor.observes.{channel}=1", *pay(channel))
     one, two = make_simulation(*settings), make_simulation(*settings)
     for simulation in (one, two):
@@ -86,7 +86,7 @@ def test_what_is_kept_of_a_step_survives_a_checkpoint(channel: str, array: str, 
         two.engine.restore(0, saved)
 
 
-def test_neither_threads_nor_worlds_change_what_channels_say() -> None:
+def test_threads_and_other_worlds_do_not_change_channels() -> None:
     settings = (*FERTILE, *pay("all_kin"), *pay("all_meals", "shared"), "sensor.observes.food_distance=5")
     settings += ("sensor.observes.touched=6", "sensor.observes.all_meals=1")
     settings += ("neighbor.all.range=80", 'neighbor.food.of=["normal"]')
@@ -98,7 +98,7 @@ def test_neither_threads_nor_worlds_change_what_channels_say() -> None:
     assert alone.worlds[0].agents()["reward"].any()
 
 
-def test_others_are_near_within_the_range_and_no_further() -> None:
+def test_only_neighbors_within_the_range_are_near() -> None:
     plain = (*QUICK, *STILL, *DEATHLESS, *CHILDLESS, *ALIKE, "food.normal.growth_rate=0", "neighbor.close.range=50")
     of = ('neighbor.grain.of=["normal"]', "neighbor.grain.range=50", 'neighbor.all.of=["normal", "*"]')
     names = ("close_count", "grain_count", "all_count", "grain_distance", "grain_bearing", "all_distance")
@@ -107,7 +107,7 @@ def test_others_are_near_within_the_range_and_no_further() -> None:
     )
     agents = [(100, 100, 0.0), (149.9, 100, 1.0), (150.1, 100.0, 2.0), (100, 300, 0.0)]
     set_scene(simulation, agents, [(100, 140), (100, 151), (70, 70)])
-    ahead, behind = 0.0, math.atan2(30, -30)  # of the grain at (100, 140) and at (70, 70)
+    ahead, behind = 0.0, math.atan2(30, -30)  # bearings of the grains at (100, 140) and (70, 70)
     seen = observed(simulation, *names)
     assert seen[:, :3].tolist() == [[1, 2, 3], [2, 0, 2], [1, 0, 1], [0, 0, 0]]
     np.testing.assert_allclose(seen[:, 3], [40, 50, 50, 50])
@@ -119,7 +119,7 @@ def test_others_are_near_within_the_range_and_no_further() -> None:
     assert rewards(simulation, 0).tolist() == [2, 2, 1, 0]
 
 
-def test_the_year_is_that_of_the_first_schedule_or_its_own() -> None:
+def test_the_year_is_set_by_the_first_schedule_or_by_its_own_setting() -> None:
     year = "food.normal.schedule.growth_rate={points=[[0, 1.0], [5, 2.0]], period=40}"
     for settings, period in ((year,), 40), ((year, "sensor.season_period=16"), 16):
         names = ("season_sine", "season_cosine")
@@ -153,12 +153,12 @@ def test_the_year_is_that_of_the_first_schedule_or_its_own() -> None:
         ),
     ],
 )
-def test_names_that_lead_nowhere_are_refused(settings: list[str], message: str) -> None:
+def test_invalid_names_are_refused(settings: list[str], message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         load_config("baseline", overrides=settings)
 
 
-def test_a_rule_gets_a_paid_channel_once_where_it_knows_it_already() -> None:
+def test_a_rule_gets_a_paid_channel_only_once() -> None:
     layout = layouts(load_config("baseline", overrides=["reward.pay.moved={}", "reward.pay.spent.channel=moved"]))
     names = [channel.name for channel in layout["agent"].recorded]
     assert "moved" not in names
@@ -177,7 +177,7 @@ def test_a_rule_gets_a_paid_channel_once_where_it_knows_it_already() -> None:
         ("contacts", 3),
     ],
 )
-def test_the_engine_refuses_a_number_that_a_source_does_not_have(source: str, index: int) -> None:
+def test_the_engine_refuses_an_index_that_a_source_does_not_have(source: str, index: int) -> None:
     native = engine_input(load_config("baseline", overrides=["reward.pay.moved={}"]))
     native.settings["layout"][0]["terms"][-1]["channel"] |= {"source": source, "index": index}
     with pytest.raises(

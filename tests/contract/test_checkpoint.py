@@ -1,4 +1,4 @@
-"""A world that was saved and restored goes on as if nothing had happened, bit for bit."""
+"""A saved and restored world continues as if nothing had happened, bit for bit."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from worlds import QUICK, RELEASED, make_engine, make_simulation
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 WINDOW = 64
 
-# How each array of the state gets into a checkpoint. An array that stands nowhere here would be forgotten.
+# How each array of the state gets into a checkpoint. An array that is neither saved nor listed here would be lost.
 DERIVED = {"alive", "living", "free", "free_count", "folded_bias", "packed_weights"}
 TAKEN_BY_READER = {"death_log", "death_log_species", "death_log_cause", "death_log_eaten", "death_log_genome"}
 FROM_CONFIG = {"physics.walls"}
@@ -20,11 +20,11 @@ SAVED_AS = {
 
 
 def continued(pieces, *, saved_at, preset="baseline", threads=1, slot_order=(), settings=()):
-    """The digest of a life that was carried over into a new simulation after `saved_at` steps."""
+    """A world that was moved into a new simulation after `saved_at` steps and then continued."""
     first = make_simulation(*LIVELY, *settings, preset=preset, seeds=(3,), threads=threads)
     first.run(saved_at)
     second = make_simulation(*LIVELY, *settings, preset=preset, seeds=(3,), threads=threads)
-    second.run(5)  # whatever was there before is gone
+    second.run(5)  # restoring replaces this state
     second.engine.restore(0, first.engine.save(0))
     assert second.worlds[0].digest() == first.worlds[0].digest()
     for steps in pieces:
@@ -44,7 +44,7 @@ def test_weights_for_acting_are_derived_from_what_is_restored(weights):
     first = make_simulation(*LIVELY, f'learning.acting_weights="{other}"', seeds=(3,))
     first.run(100)
     lives = [make_simulation(*LIVELY, f'learning.acting_weights="{weights}"', seeds=(3,)) for _ in range(2)]
-    lives[1].run(5)  # whatever was there before is gone
+    lives[1].run(5)  # restoring replaces this state
     for life in lives:
         life.engine.restore(0, first.engine.save(0))
         life.run(50)
@@ -70,13 +70,13 @@ def test_a_restored_world_has_the_same_future(saved_at, preset):
 
 @pytest.mark.parametrize("saved_at", [0, 1, WINDOW - 1, WINDOW, 2 * WINDOW + 30])
 def test_the_released_program_has_the_same_future(saved_at):
-    """Its newborns that wait, what the dead left in free slots, and eaten food that is seen are state too."""
+    """Waiting newborns, what the dead left in free slots, and eaten food that is still seen are state, too."""
     world = continued([150], saved_at=saved_at, settings=RELEASED, threads=2)
     assert world.digest() == left_alone(saved_at + 150, settings=RELEASED).digest()
 
 
 @pytest.mark.parametrize("settings", [(), RELEASED], ids=["corrected", "released"])
-def test_it_may_be_saved_at_every_step(settings):
+def test_a_world_may_be_saved_at_every_step(settings):
     few = (*LIVELY, *settings, "population.capacity=40", "population.initial_count=30")
     simulation, other = (make_simulation(*few, seeds=(3,)) for _ in range(2))
     for _ in range(2 * WINDOW + 5):
@@ -86,15 +86,15 @@ def test_it_may_be_saved_at_every_step(settings):
         assert simulation.worlds[0].digest() == other.worlds[0].digest()
 
 
-def test_a_jam_goes_on_under_either_solver():
-    """Impulses are state: the same world without them has another future."""
+def test_a_jam_continues_under_either_solver():
+    """Impulses are state: the same world without them has a different future."""
     for solver in ("sequential", "jacobi"):
         jam = (f'physics.solver="{solver}"', "population.initial_count=150")
         world = continued([100], saved_at=200, settings=jam, threads=2)
         assert world.digest() == left_alone(300, settings=jam).digest()
 
 
-def test_impulses_of_the_solver_jacobi_are_saved():
+def test_impulses_of_the_jacobi_solver_are_saved():
     jam = (*LIVELY, 'physics.solver="jacobi"', "population.initial_count=150")
     lives = [make_simulation(*jam, seeds=(3,)) for _ in range(2)]
     lives[0].run(200)
@@ -111,7 +111,7 @@ def test_threads_may_change_in_between():
     assert continued([100, 100], saved_at=100, threads=2).digest() == left_alone(300).digest()
 
 
-def test_a_crowd_that_pushes_goes_on_pushing():
+def test_a_pushing_crowd_keeps_pushing():
     crowd = ("population.capacity=300", "population.initial_count=200", "motor.min_force=20", *LIVELY)
     first, second, third = (make_simulation(*crowd) for _ in range(3))
     first.run(150)
@@ -124,11 +124,11 @@ def test_a_crowd_that_pushes_goes_on_pushing():
     for simulation in (first, second, third):
         simulation.run(150)
     assert first.worlds[0].digest() == second.worlds[0].digest()
-    assert first.worlds[0].digest() != third.worlds[0].digest(), "impulses matter"
+    assert first.worlds[0].digest() != third.worlds[0].digest(), "impulses made no difference"
 
 
 @pytest.mark.parametrize("settings", [(), RELEASED], ids=["corrected", "released"])
-def test_slots_and_reads_are_no_part_of_a_digest(settings):
+def test_slots_and_reads_do_not_affect_a_digest(settings):
     plain = make_engine(*LIVELY, *settings)
     shuffled = make_engine(*LIVELY, *settings, slot_order=np.random.default_rng(1).permutation(200).tolist())
     for _ in range(4):
@@ -150,12 +150,12 @@ def test_a_dead_world_stays_dead():
     assert second.worlds[0].digest() == first.worlds[0].digest()
 
 
-def test_every_array_of_the_state_is_saved_or_known_to_follow_from_others():
+def test_every_array_of_the_state_is_saved_or_derived_from_others():
     engine = make_engine(*LIVELY, *RELEASED)
     engine.run(WINDOW + 1)
     saved = set(engine.save(0))
     for path in engine.view_names():
-        if engine.view(0, path).size == 0:  # of a rule that this world does not have
+        if engine.view(0, path).size == 0:  # of a rule that this world does not use
             continue
         if path.split(".")[0] in DERIVED | TAKEN_BY_READER or path.startswith(tuple(FROM_CONFIG | IMPULSES)):
             continue

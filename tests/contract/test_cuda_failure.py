@@ -1,4 +1,4 @@
-"""What goes wrong with a device, and what is left of a run then: on the emulated one, which can be told to fail."""
+"""Device failures and what remains of a run after one, on the emulated device, which can be made to fail."""
 
 import ctypes
 import os
@@ -28,14 +28,14 @@ Fails = Callable[[int, int], None]
 
 @pytest.fixture
 def fails(emulated: str) -> Iterator[Fails]:
-    """fails(run, bytes): the devices are lost in the N-th run from now, and give at most so many bytes at once."""
+    """fails(run, bytes): lose the devices in the N-th run from now, and allocate at most that many bytes at once."""
     set_failure = ctypes.CDLL(os.environ[EMULATION_VARIABLE]).hedon_emulation_fails
     set_failure.argtypes = (ctypes.c_int64, ctypes.c_int64)
     yield set_failure
     set_failure(NEVER, NEVER)
 
 
-def test_too_little_memory_is_one_sentence_and_leaves_the_device_usable(emulated: str, fails: Fails):
+def test_too_little_memory_gives_one_sentence_and_leaves_the_device_usable(emulated: str, fails: Fails):
     fails(NEVER, 1_000_000)
     with pytest.raises(EngineError, match="device 'cuda-emulated': the device has too little memory for these"):
         make_simulation(*QUICK, *FEW, backend=emulated)
@@ -57,7 +57,7 @@ def test_a_run_of_few_worlds_says_that_the_processor_may_be_faster(
     assert few_worlds(2, 1).startswith("With fewer than about 3 worlds, the processor (1 core) is")
 
 
-def test_a_device_that_is_lost_takes_nothing_with_it_that_the_host_has(emulated: str, fails: Fails):
+def test_losing_a_device_loses_nothing_that_the_host_holds(emulated: str, fails: Fails):
     simulation = make_simulation(*QUICK, *FEW, seeds=(1, 2, 3), backend=emulated)
     simulation.run(5)
     alive = [world.alive for world in simulation.worlds]
@@ -71,10 +71,10 @@ def test_a_device_that_is_lost_takes_nothing_with_it_that_the_host_has(emulated:
             lost()
 
 
-def test_a_run_goes_on_from_its_last_checkpoint_after_its_device_was_lost(
+def test_a_run_resumes_from_its_last_checkpoint_after_losing_its_device(
     emulated: str, fails: Fails, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    """And has the bits of a run that lost nothing."""
+    """It ends with the same bits as a run that lost nothing."""
     whole = small_run(tmp_path / "whole", 6 * WINDOW)
     assert small_run(tmp_path / "run", 2 * WINDOW, backend=emulated).status == "finished"
     with monkeypatch.context() as asked:
@@ -92,10 +92,10 @@ def test_a_run_goes_on_from_its_last_checkpoint_after_its_device_was_lost(
     assert check_run(tmp_path / "run").findings == ()
 
 
-def test_the_host_waits_for_a_device_at_the_ends_of_windows_alone(
+def test_the_host_waits_for_a_device_only_at_the_ends_of_windows(
     emulated: str, fails: Fails, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    """But in the first, since nobody knows yet how many die: the device has five calls, and is lost in a sixth."""
+    """Except in the first, when the number of deaths is unknown: there are five calls, and a sixth would fail."""
     monkeypatch.setattr("hedon.experiment.run.PIECE_SECONDS", 1e-9)
     fails(6, NEVER)
     long = ("world.rollout_steps=128", "hazard.kappa=0.001")
@@ -115,7 +115,7 @@ def test_a_library_that_is_older_than_the_engine_is_refused(
 
 
 @pytest.mark.parametrize("worlds", [1, 2, 5])
-def test_worlds_are_dealt_out_to_all_devices(emulated: str, worlds: int):
+def test_worlds_are_distributed_over_all_devices(emulated: str, worlds: int):
     simulation = make_simulation(*QUICK, *FEW, seeds=tuple(range(worlds)), backend=emulated)
     assert simulation.engine.device_count == min(worlds, 2)
     simulation.run(70)

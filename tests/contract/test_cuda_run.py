@@ -1,4 +1,4 @@
-"""Whole runs through the emulated device: records, checkpoints, resuming on either side, the check of the folder."""
+"""Whole runs on the emulated device: records, checkpoints, resuming on either backend, checking the folder."""
 
 import json
 import signal
@@ -31,7 +31,7 @@ SETTINGS = (
 )
 
 
-def test_a_run_goes_on_from_device_to_processor_with_the_same_bits(
+def test_a_run_moves_from_device_to_processor_with_the_same_bits(
     emulated: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     config = load_config("baseline", overrides=SETTINGS)
@@ -65,8 +65,8 @@ def settings() -> list[str]:
 
 
 @pytest.mark.long
-def test_commands_take_the_device_as_the_processor(emulated: str, tmp_path: Path):
-    """run, Ctrl-C, resume without naming the device, branch, and the check of both folders."""
+def test_commands_work_on_the_device_as_on_the_processor(emulated: str, tmp_path: Path):
+    """Run, Ctrl-C, resume without naming the device, branch, and check both folders."""
     folder = tmp_path / "run"
     command = ["hedon", "run", "baseline", "--backend", emulated, "--seeds", "1-3", "--steps", "3200", *settings()]
     process = subprocess.Popen([*command, "--out", str(folder), "--checkpoint", "0"], stdout=subprocess.PIPE, text=True)
@@ -99,7 +99,7 @@ def test_benchmarks_measure_a_device_and_compare_its_bits(emulated: str, tmp_pat
 
 
 @pytest.mark.long
-def test_a_sweep_on_a_device_gives_the_table_of_the_processor(
+def test_a_sweep_on_a_device_gives_the_same_table_as_on_the_processor(
     emulated: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     file = sweep_file(tmp_path, steps=96, seeds=1, worlds=1)

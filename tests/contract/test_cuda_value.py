@@ -1,4 +1,4 @@
-"""Worlds of an emulated CUDA device are values: they go on there and on the processor with the same bits."""
+"""Worlds on an emulated CUDA device are values: copies continue there and on the processor with the same bits."""
 
 import pytest
 from cuda_emulation import emulated as emulated
@@ -23,7 +23,7 @@ def test_a_copy_on_the_device_goes_on_alone(emulated: str, way, settings):
 
 
 @BOTH
-def test_kept_worlds_go_on_on_the_other_side(emulated: str, settings):
+def test_saved_worlds_continue_on_the_other_backend(emulated: str, settings):
     here, there = (make_simulation(*settings, seeds=(3, 8), backend=each) for each in ("avx2", emulated))
     here.run(21)
     there.run(21)

@@ -1,11 +1,11 @@
-"""Every variant of the kernels of CUDA has the bits of AVX2 on the emulated device."""
+"""On the emulated device, every variant of the CUDA kernels gives the same bits as AVX2."""
 
 import pytest
 from cuda_emulation import VARIANTS, emulate
 from worlds import make_simulation
 
 QUICK = (VARIANTS[0], VARIANTS[-1])
-"""The default, and the variant that differs most; `make test-long` builds all, each in a quarter of a minute."""
+"""The default and the variant that differs most; `make test-long` builds all, each in about 15 seconds."""
 SHARED = "shared_bodies"
 SHORT = ("world.rollout_steps=16", "learning.minibatch_size=8", "learning.update_epochs=2")
 SIZES = {"capacity": 12, "initial_count": 6}
@@ -16,7 +16,7 @@ SETTINGS = {
     ),
 }
 SEEDS = {"baseline": range(1, 10), "predator": range(1, 3)}
-"""More worlds than the emulated devices have learners at once, so that variants with groups of worlds have several."""
+"""More worlds than the emulated devices have concurrent learners, so variants that group worlds have several groups."""
 
 
 @pytest.mark.parametrize("preset", SETTINGS)
@@ -24,7 +24,7 @@ SEEDS = {"baseline": range(1, 10), "predator": range(1, 3)}
     "variant", [pytest.param(each, marks=() if each in QUICK else pytest.mark.long) for each in VARIANTS]
 )
 def test_a_variant_has_the_same_bits(variant: str, preset: str, monkeypatch: pytest.MonkeyPatch):
-    """Two windows, and the beginning of the third."""
+    """Two windows and the start of the third."""
     emulated = emulate(monkeypatch, variant=variant)
     one, other = (
         make_simulation(*SHORT, *SETTINGS[preset], preset=preset, seeds=tuple(SEEDS[preset]), backend=backend)
@@ -36,7 +36,7 @@ def test_a_variant_has_the_same_bits(variant: str, preset: str, monkeypatch: pyt
 
 
 def test_groups_of_worlds_that_run_at_the_same_time_have_the_same_bits(monkeypatch: pytest.MonkeyPatch):
-    """Kernels of several groups, and the threads of their blocks, are threads of the system."""
+    """Kernels of several groups, and the threads of their blocks, run as system threads."""
     emulated = emulate(monkeypatch, 32, system_threads=True, variant="overlap_two_learners")
     tiny = ("world.rollout_steps=4", "learning.minibatch_size=4", "learning.update_epochs=1")
     sizes = ("population.capacity=6", "population.initial_count=4")
@@ -57,8 +57,8 @@ def test_groups_of_worlds_that_run_at_the_same_time_have_the_same_bits(monkeypat
     ],
     ids=["more bodies than fit", "more pairs than fit", "jacobi", "many meals"],
 )
-def test_what_does_not_fit_into_shared_memory_stays_where_it_was(settings: tuple[str, ...], monkeypatch):
-    """Each array is placed by itself, again in every step."""
+def test_arrays_that_do_not_fit_into_shared_memory_stay_where_they_were(settings: tuple[str, ...], monkeypatch):
+    """Each array is placed separately in every step."""
     emulated = emulate(monkeypatch, variant=SHARED)
     one, other = (make_simulation(*SHORT, *settings, backend=backend) for backend in ("avx2", emulated))
     for simulation in (one, other):

@@ -1,6 +1,6 @@
-"""Windows on an emulated CUDA device have the bits of AVX2: every preset, many worlds, scenes made to be difficult.
+"""Windows on an emulated CUDA device give the same bits as AVX2: every preset, many worlds, difficult scenes.
 
-The kernels sum in the order of the CPU's, so equality is exact: of all state, after steps, learning and the audit.
+The kernels sum in the same order as those of the CPU, so all state is equal after steps, learning and the audit.
 """
 
 import numpy as np
@@ -36,7 +36,7 @@ PRESETS = ("baseline", "small", "poison", "relocation", "seasons", "predator", "
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_presets_have_the_same_bits(emulated: str, preset: str):
-    """A window with its learning and the beginning of the next, in pieces that end anywhere."""
+    """A window with its learning and the start of the next, in pieces that end within windows."""
     one, other = pair(emulated, *SHORT, preset=preset)
     for steps in (3, 14):
         one.run(steps)
@@ -142,7 +142,7 @@ def test_the_released_rules_have_the_same_bits(emulated: str):
 
 
 @pytest.mark.parametrize("weights", ["float32", "bfloat16"])
-def test_minibatches_of_several_blocks_with_a_rest(emulated: str, weights: str):
+def test_minibatches_of_several_blocks_with_a_remainder(emulated: str, weights: str):
     """80 samples: a block of 64, and one of 16."""
     settings = ("world.rollout_steps=160", "learning.minibatch_size=80", "learning.update_epochs=1")
     acting = f'learning.acting_weights="{weights}"'
@@ -153,13 +153,13 @@ def test_minibatches_of_several_blocks_with_a_rest(emulated: str, weights: str):
 
 
 def crowd(rng: np.random.Generator, count: int, width: float) -> np.ndarray:
-    """Agents so near to one another that all of them touch."""
+    """Agents so close together that all of them touch."""
     place = 240.0 + width * (rng.random((count, 2)) - 0.5)
     return np.column_stack([place, rng.uniform(0, 2 * np.pi, count)])
 
 
 def outcome(simulation: Simulation, steps: int) -> str:
-    """Runs, and returns the fault that ended it."""
+    """Runs, and returns the fault that ended the run, if any."""
     try:
         simulation.run(steps)
     except EngineError as error:
@@ -169,8 +169,8 @@ def outcome(simulation: Simulation, steps: int) -> str:
 
 @pytest.mark.parametrize(("solver", "width", "fault"), [("sequential", 90.0, True), ("jacobi", 200.0, False)])
 def test_crowds_at_walls_and_on_food_have_the_same_bits(emulated: str, solver: str, width: float, fault: bool):
-    """Overlaps, rows of touching bodies, a corner, foods in a mouth: what takes lists and islands to their limits, and
-    in the narrower crowd beyond them."""
+    """Overlaps, rows of touching bodies, a corner and food in mouths take lists and islands to their limits, and beyond
+    them in the narrower crowd."""
     rng = np.random.default_rng(3)
     row = np.column_stack([np.arange(20) * 19.0 + 30.0, np.full(20, 11.0), np.full(20, np.pi / 2)])
     agents = np.concatenate([crowd(rng, 30, width), row])
@@ -185,7 +185,7 @@ def test_crowds_at_walls_and_on_food_have_the_same_bits(emulated: str, solver: s
     require_equal(one, other)
 
 
-def test_a_world_that_dies_out_stops_alone(emulated: str):
+def test_a_world_that_dies_out_does_not_stop_the_others(emulated: str):
     one, other = pair(emulated, *SHORT, *FEW, seeds=(1, 2, 3))
     for simulation in (one, other):
         set_scene(simulation, [[100.0, 100.0, 0.0]], energy=1e-3)
@@ -194,13 +194,13 @@ def test_a_world_that_dies_out_stops_alone(emulated: str):
     assert [w.step for w in one.worlds] == [w.step for w in other.worlds]
 
 
-def test_not_a_number_is_found_where_the_processor_finds_it(emulated: str):
-    """An infinite learning rate is not allowed; an advantage that is not finite comes from a reward that is not."""
+def test_nan_is_found_where_the_processor_finds_it(emulated: str):
+    """Huge weights make activations infinite; an infinite learning rate would be refused."""
     messages = []
     for simulation in pair(emulated, *SHORT, *FEW):
         saved = simulation.engine.save(0)
         saved["params"] = saved["params"].copy()
-        saved["params"][3, 70] = 3e38  # finite, so it may be restored; its activations are not, and the audit says so
+        saved["params"][3, 70] = 3e38  # finite, so it can be restored; its activations are not, and the audit fails
         saved["params"][3, -16:-13] = 3e38
         simulation.engine.restore(0, saved)
         with pytest.raises(EngineError, match="not_finite") as raised:
@@ -209,7 +209,7 @@ def test_not_a_number_is_found_where_the_processor_finds_it(emulated: str):
     assert messages[0] == messages[1]
 
 
-def test_what_a_device_cannot_do_is_refused(emulated: str):
+def test_unsupported_settings_are_refused(emulated: str):
     with pytest.raises(EngineError, match="actions of a program"):
         make_simulation('learning.policy="external"', backend=emulated)
     many = [f"food.kind{i}.gives.energy=1" for i in range(6)]
@@ -217,7 +217,7 @@ def test_what_a_device_cannot_do_is_refused(emulated: str):
         make_simulation(*many, "sensor.touch_sectors=14", backend=emulated)
 
 
-def test_views_and_rows_are_those_of_the_device(emulated: str):
+def test_views_and_rows_of_a_device_match_those_of_the_processor(emulated: str):
     one, other = pair(emulated, *QUICK, *FEW, "hazard.alpha_age=0.005")
     for simulation in (one, other):
         simulation.run(64)

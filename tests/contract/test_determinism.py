@@ -12,9 +12,9 @@ from worlds import QUICK, RELEASED, make_engine, make_simulation
 
 from hedon.error import EngineError
 
-STEPS = 200  # three windows of 64 and a rest
+STEPS = 200  # three windows of 64 steps and a remainder
 LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
-"""Births and deaths in every few steps, so that slots are reused."""
+"""Births and deaths every few steps, so slots are reused."""
 
 
 def _digests(seeds=(7,), threads=1, pieces=(STEPS,), preset="baseline", settings=()):
@@ -25,7 +25,7 @@ def _digests(seeds=(7,), threads=1, pieces=(STEPS,), preset="baseline", settings
     return dict(zip(seeds, (world.digest() for world in simulation.worlds), strict=True))
 
 
-def test_the_same_seed_repeats_itself_and_another_does_not():
+def test_the_same_seed_repeats_a_life_and_another_does_not():
     first, second = _digests((7, 8)), _digests((7, 8))
     assert first == second
     assert first[7] != first[8]
@@ -37,7 +37,7 @@ def test_threads_change_nothing(threads):
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
-def test_company_changes_nothing(threads):
+def test_other_worlds_change_nothing(threads):
     together = _digests((7, 3, 11, 4, 5), threads)
     for seed in (7, 4):
         assert together[seed] == _digests((seed,))[seed]
@@ -81,16 +81,16 @@ def test_a_second_caller_is_refused_while_the_engine_runs():
     simulation = make_simulation()
     thread = threading.Thread(target=simulation.run, args=(4000,))
     thread.start()
-    time.sleep(0.2)  # let it begin; it then runs for seconds
+    time.sleep(0.2)  # let it start; it then runs for several seconds
     with pytest.raises(EngineError, match="busy"):
         simulation.run(1)
     thread.join()
     assert simulation.worlds[0].step == 4000
 
 
-def test_busy_neighbors_neither_stop_a_team_nor_change_anything():
-    # As many busy programs as processors: the team then changes between stepping together and alone.
-    # They end by themselves, should this process crash.
+def test_other_busy_processes_neither_stop_a_team_nor_change_anything():
+    # With as many busy processes as processors, the team switches between stepping together and alone.
+    # They exit by themselves if this process crashes.
     hog = [sys.executable, "-c", "import time; end = time.time() + 120\nwhile time.time() < end: pass"]
     hogs = [subprocess.Popen(hog) for _ in range(os.cpu_count() or 1)]
     try:
@@ -98,7 +98,7 @@ def test_busy_neighbors_neither_stop_a_team_nor_change_anything():
         thread = threading.Thread(target=simulation.run, args=(1000,), daemon=True)
         thread.start()
         thread.join(timeout=120)
-        assert not thread.is_alive(), "the members of the team wait for one another"
+        assert not thread.is_alive(), "the members of the team are waiting for one another"
     finally:
         for process in hogs:
             process.kill()

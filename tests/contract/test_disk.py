@@ -1,6 +1,6 @@
-"""A full disk, one that cannot be written, a folder in use: what is there stays whole, and a message says what to do.
+"""With a full disk, a read-only disk or a folder in use, data stays intact and a message says what to do.
 
-Each condition is the real one. File systems of their own take root; without it those tests are skipped.
+Each condition is real. Mounting file systems requires root; without it, those tests are skipped.
 """
 
 import gc
@@ -32,13 +32,13 @@ def mount(*arguments):
 
 @pytest.fixture
 def disk(tmp_path):
-    """A small file system of its own, in a folder whose name is awkward."""
+    """A small separate file system, in a folder with an awkward name."""
     folder = tmp_path / "Größe und 空間"
     folder.mkdir()
     if mount("-t", "tmpfs", "-o", "size=40m", "tmpfs", folder).returncode != 0:
         pytest.skip("cannot mount a file system here: it takes root and the right to mount")
     yield folder
-    gc.collect()  # errors that a test caught may still hold what they were about: arrays in a checkpoint's file
+    gc.collect()  # errors caught by a test may still hold arrays in a checkpoint's file
     subprocess.run(["umount", folder], check=True)
 
 
@@ -55,7 +55,7 @@ def cli(*arguments):
 
 
 def readable(folder: Path) -> None:
-    """Whatever is there is whole."""
+    """Requires that all data in the folder is intact."""
     run = open_run(folder)
     assert run.damaged_parts() == []
     run.agents()
@@ -64,12 +64,12 @@ def readable(folder: Path) -> None:
         load_checkpoint(path)
 
 
-def test_a_full_disk_ends_the_run_and_room_lets_it_go_on(disk, whole):
+def test_a_full_disk_ends_the_run_and_free_space_lets_it_continue(disk, whole):
     folder = disk / "run"
     filler = disk / "filler"
     small_run(folder, 50, frames=20)
     free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
-    filler.write_bytes(bytes(free - 3_000_000))  # less than a checkpoint takes
+    filler.write_bytes(bytes(free - 3_000_000))  # leaves less than a checkpoint takes
     with pytest.raises(RecordError, match=r"cannot write records to .*No space left on device.*hedon resume"):
         resume(folder, steps=STEPS, checkpoint_seconds=0)
     readable(folder)
@@ -83,16 +83,16 @@ def test_a_full_disk_ends_the_run_and_room_lets_it_go_on(disk, whole):
     assert_same_run(folder, whole)
 
 
-def test_no_room_at_all_is_said_at_the_start(disk):
+def test_a_completely_full_disk_is_reported_at_the_start(disk):
     free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
     (disk / "filler").write_bytes(bytes(free))
     with pytest.raises(RecordError, match="No space left on device"):
         small_run(disk / "run", 50)
     (disk / "filler").unlink()
-    assert small_run(disk / "run", 50).status == "finished", "what was left of the first attempt is in nobody's way"
+    assert small_run(disk / "run", 50).status == "finished", "the remains of the first attempt are in the way"
 
 
-def test_a_disk_that_cannot_be_written_is_still_read(disk):
+def test_a_read_only_disk_can_still_be_read(disk):
     folder = disk / "run"
     small_run(folder, 50)
     assert mount("-o", "remount,ro", disk).returncode == 0
@@ -104,7 +104,7 @@ def test_a_disk_that_cannot_be_written_is_still_read(disk):
     readable(folder)
 
 
-def test_a_folder_in_use_names_its_user_and_a_killed_one_is_free(tmp_path):
+def test_a_folder_in_use_names_its_process_and_is_free_after_a_kill(tmp_path):
     folder = tmp_path / "run"
     process = killed_run.start(folder)
     assert process.pid is not None
@@ -122,7 +122,7 @@ def test_a_folder_in_use_names_its_user_and_a_killed_one_is_free(tmp_path):
     assert resume(folder).status == "finished"
 
 
-def test_a_killed_start_is_no_run(tmp_path):
+def test_a_folder_left_by_a_killed_start_is_not_a_run(tmp_path):
     for name in TABLE_FOLDERS:
         (tmp_path / "run" / name).mkdir(parents=True)
     (tmp_path / "run" / "config.toml").write_text("half a con")
@@ -142,7 +142,7 @@ def test_a_missing_manifest_is_named_and_nothing_is_touched(tmp_path):
     assert resume(folder, steps=100).status == "finished"
 
 
-def test_what_a_crash_left_half_written_is_cleared_away(tmp_path):
+def test_files_left_half_written_by_a_crash_are_removed(tmp_path):
     folder = tmp_path / "run"
     small_run(folder, 50)
     left = [folder / "checkpoints" / ".step-0000000060.npz.tmp", folder / "agents" / ".part-000009.parquet.tmp"]

@@ -1,6 +1,6 @@
-"""The engine's own door: whatever config is put together in Python, it is refused by name or lived in, in any process.
+"""The entry to the engine: any config built in Python is either refused by name or simulated, without a crash.
 
-HEDON_DOOR=N tries N configs of each kind instead of the few of the suite.
+HEDON_DOOR=N tries N random configs instead of the default number.
 """
 
 import copy
@@ -26,11 +26,11 @@ from hedon.error import EngineError
 
 TRIALS = int(os.environ.get("HEDON_DOOR", "400"))
 SECONDS = 20.0
-"""Longest time of a trial: a hang, since each lives for a few steps."""
+"""Time limit of a trial: anything longer is a hang, since each runs only a few steps [s]."""
 
 
 def changed(config: Any, path: str, value: Any) -> Any:
-    """A config, or a part of one, with one setting replaced, unchecked, as `dataclasses.replace` does it."""
+    """A config, or part of one, with one setting replaced without checks, as `dataclasses.replace` does."""
     name, _, rest = path.partition(".")
     if isinstance(config, dict):
         return {**config, name: changed(config[name], rest, value) if rest else value}
@@ -57,7 +57,7 @@ REPORTED = [
 
 
 @pytest.mark.parametrize(("path", "value"), REPORTED)
-def test_what_no_world_can_be_is_refused_by_name(path, value):
+def test_impossible_values_are_refused_by_name(path, value):
     shared = path.startswith(("food.", "world."))
     config = changed(hedon.load_config("baseline"), path if shared else f"species.agent.{path}", value)
     place = "food.normal" if path.startswith("food") else path
@@ -92,7 +92,7 @@ def test_the_engine_itself_refuses_them_too(path, value):
         ({"walls": [[0.0, 0.0, 0.0, 0.0]] * 4}, "walls"),
     ],
 )
-def test_what_comes_beside_a_config_is_checked(arguments, words):
+def test_arguments_other_than_the_config_are_checked(arguments, words):
     import numpy as np
 
     native = engine_input(hedon.load_config("baseline"))
@@ -103,7 +103,7 @@ def test_what_comes_beside_a_config_is_checked(arguments, words):
 
 
 def test_the_engine_takes_whatever_the_settings_allow():
-    """Its own limits are nowhere narrower than those that people read."""
+    """Its own limits are never narrower than the documented ones."""
     base, taken, left_out = hedon.load_config("poison"), 0, 0
     for path, setting, _ in leaves(base):
         for bound in (setting.doc.range.ge, setting.doc.range.le):
@@ -120,13 +120,13 @@ def test_the_engine_takes_whatever_the_settings_allow():
 
 
 def test_the_engine_refuses_every_number_that_the_settings_refuse():
-    """It has their limits, and says the same path."""
+    """It has the same limits, and its error gives the path."""
     base = hedon.load_config("poison")
     native, places, refused = engine_input(base), engine_paths(base), 0
     for path, setting, _ in leaves(base):
         limits = setting.doc.range
         if setting.type not in (int, float) or path not in places or path.endswith("_force"):
-            continue  # forces are in the units of a body there
+            continue  # the engine takes forces in the units of a body
         at = places[path][0]
         low, high = (limits.ge if limits.gt is None else limits.gt), limits.le or limits.lt
         assert low is not None
@@ -140,7 +140,7 @@ def test_the_engine_refuses_every_number_that_the_settings_refuse():
 
 
 def changed_at(tree: Any, path: str, value: Any) -> Any:
-    """A copy of nested dicts and lists with another value at a path of the engine, such as `food[0].energy`."""
+    """A copy of nested dicts and lists with a new value at an engine path, such as `food[0].energy`."""
     copied = copy.deepcopy(tree)
     *names, last = re.findall(r"\w+", path)
     inner: Any = copied
@@ -156,7 +156,7 @@ ODD = [None, "x", "", "death", True, (), (1.0, 2.0), ((1.0, 2.0),), {}, [], b"x"
 
 
 def random_config(seed: int) -> Config:
-    """A preset with one to three settings replaced by anything, small enough to be lived in."""
+    """A preset with one to three settings replaced by arbitrary values, small enough to simulate."""
     draw = random.Random(seed)
     config = hedon.load_config(
         draw.choice(PRESETS),
@@ -195,8 +195,8 @@ TRIAL = """
 
 
 @pytest.mark.repeated
-def test_random_configs_are_refused_by_name_or_lived_in():
-    """In a process of its own: a signal or a hang there is a failure here, and says which config it was."""
+def test_random_configs_are_refused_by_name_or_simulated():
+    """In a separate process, so that a crash or a hang there fails the test here and identifies the config."""
     tests = Path(__file__).parents[1]
     code = "import hedon.experiment.memory\n" + textwrap.dedent(TRIAL)
     done = subprocess.run(
@@ -209,4 +209,4 @@ def test_random_configs_are_refused_by_name_or_lived_in():
     )
     last = done.stdout.split()[-1] if done.stdout else ""
     assert (done.returncode, last) == (0, "done"), f"config {last}: {done.stderr[-2000:]}"
-    assert int(done.stdout.split()[-2]) > 0.05 * TRIALS, "too few were lived in to tell"
+    assert int(done.stdout.split()[-2]) > 0.05 * TRIALS, "too few configs were simulated"

@@ -1,4 +1,4 @@
-"""A run that stops at a fault keeps what it was, and shows it again."""
+"""A run that stops at a fault records it and can reproduce it."""
 
 import pytest
 from memory import overwrite
@@ -17,7 +17,7 @@ from hedon.record.folder import FAULT, checkpoint_paths
 from hedon.record.manifest import load_manifest
 from hedon.record.reader import open_run
 
-# Learning so fast that its numbers end.
+# Learning so fast that its numbers overflow.
 WILD = (
     *(
         "learning.learning_rate=1",
@@ -31,7 +31,7 @@ WILD = (
 
 @pytest.fixture
 def failed(tmp_path):
-    """A run of two worlds that stopped at a fault that its rules bring about."""
+    """A run of two worlds that stopped at a fault caused by its settings."""
     with pytest.raises(EngineError) as fault:
         small_run(tmp_path / "run", 100 * WINDOW, overrides=WILD, checkpoint_seconds=0)
     return tmp_path / "run", str(fault.value)
@@ -66,7 +66,7 @@ def test_the_same_fault_recurs(failed):
 
 
 def break_at(monkeypatch, step, path, value):
-    """Lets the memory of world 1 fail at a step, once."""
+    """Corrupts the memory of world 1 at a step, once."""
     run = Simulation.run
 
     def broken(self, steps):
@@ -78,7 +78,7 @@ def break_at(monkeypatch, step, path, value):
     monkeypatch.setattr(Simulation, "run", broken)
 
 
-def test_a_fault_of_the_memory_stops_the_run_and_does_not_recur(tmp_path, monkeypatch):
+def test_a_memory_fault_stops_the_run_and_does_not_recur(tmp_path, monkeypatch):
     break_at(monkeypatch, 2 * WINDOW, "counters.energy_eaten", -7.0)
     with pytest.raises(EngineError, match=r"ledger_open.*World 1, step 192"):
         small_run(tmp_path / "run", 1000)
@@ -91,7 +91,7 @@ def test_a_fault_of_the_memory_stops_the_run_and_does_not_recur(tmp_path, monkey
     assert check_run(tmp_path / "run").findings == ()
 
 
-def test_worlds_whose_slots_cannot_be_relied_upon_are_not_read(tmp_path, monkeypatch):
+def test_worlds_with_unreliable_slots_are_not_read(tmp_path, monkeypatch):
     break_at(monkeypatch, 2 * WINDOW, "alive", 0)
     deathless = ("hazard.kappa=0", "hazard.alpha_age=0")
     with pytest.raises(EngineError, match=r"slots_inconsistent.*World 1"):

@@ -1,6 +1,6 @@
-"""A run's folder under hands that mean no good, or do two things at once: links, two reports, kills, a folder lost.
+"""A run's folder under hostile or concurrent use: links, two reports at once, kills, a removed folder.
 
-HEDON_REPORTS=N kills N reports instead of the one of the suite.
+HEDON_REPORTS=N kills N reports instead of one.
 """
 
 import json
@@ -101,7 +101,7 @@ def test_a_run_may_be_reached_by_a_link_to_its_folder(run, tmp_path):
 
 
 @pytest.mark.long
-def test_two_reports_at_once_on_a_run_that_goes_on_harm_nothing(tmp_path):
+def test_two_reports_at_once_do_not_harm_a_run_in_progress(tmp_path):
     go_on = "from killed_run import go; import sys; from pathlib import Path; go(Path(sys.argv[1]))"
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
     folder = tmp_path / "run"
@@ -112,7 +112,7 @@ def test_two_reports_at_once_on_a_run_that_goes_on_harm_nothing(tmp_path):
     for report in both:
         _, said = report.communicate(timeout=240)
         assert report.returncode == 0
-        # On a slow machine it says how far it is.
+        # On a slow machine, it reports its progress.
         assert all(line.startswith("hedon: writing the report: ") for line in said.decode().splitlines())
     assert running.wait(timeout=120) == 0
     assert load_manifest(folder).status == "finished"
@@ -125,7 +125,7 @@ def test_a_report_that_is_killed_leaves_nothing_behind(run):
     whole = {path for path in content(run) if not path.startswith(("figures", "analysis", "report", "summary"))}
     for i in range(KILLS):
         report = subprocess.Popen(["hedon", "report", str(run)], stdout=subprocess.DEVNULL)
-        time.sleep(3.0 + 3.0 * i / KILLS)  # in the midst of its figures
+        time.sleep(3.0 + 3.0 * i / KILLS)  # while it draws its figures
         report.send_signal(signal.SIGKILL)
         report.wait()
         left = set(content(run)) - whole
@@ -135,7 +135,7 @@ def test_a_report_that_is_killed_leaves_nothing_behind(run):
                 assert (run / name).read_bytes().rstrip().endswith(b"</svg>"), name
 
 
-def test_a_checkpoint_that_is_a_folder_is_passed_over(run):
+def test_a_checkpoint_that_is_a_folder_is_skipped(run):
     newest = checkpoint_paths(run)[-1]
     (newest.parent / "step-0000000777.npz").mkdir()
     manifest = hedon.resume(run, 260, threads=1)
@@ -161,7 +161,7 @@ def test_a_folder_that_is_removed_ends_the_run_at_once(tmp_path):
         small_run(tmp_path / "run", 10_000_000)
     thread.join()
     assert time.monotonic() - begun < 20
-    assert not (tmp_path / "run").exists(), "nothing is made again"
+    assert not (tmp_path / "run").exists(), "the folder was created again"
 
 
 @pytest.mark.parametrize(
@@ -177,14 +177,14 @@ def test_a_folder_that_is_removed_ends_the_run_at_once(tmp_path):
         ("status", "fine\u202e", "status"),
     ],
 )
-def test_a_manifest_of_nonsense_is_one_message(run, entry, value, words):
+def test_an_invalid_manifest_gives_one_message(run, entry, value, words):
     values = json.loads((run / "manifest.json").read_text())
     values[entry] = value
     (run / "manifest.json").write_text(json.dumps(values))
     with pytest.raises(RecordError) as caught:
         hedon.open_run(run)
     assert words in str(caught.value)
-    if entry == "status":  # what is no letter of a message is shown as an escape
+    if entry == "status":  # an unprintable character is shown as an escape
         answer = call("report", run)
         assert answer.returncode == 2
         assert "fine\\u202e" in answer.stderr

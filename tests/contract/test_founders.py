@@ -1,4 +1,4 @@
-"""Founders given as a table: they arrive, and the run can be resumed, branched, repeated and checked."""
+"""Founders given as a table: worlds start with them, and runs can be resumed, branched, repeated and checked."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ TABLE = make_founders(
 )
 
 
-def test_founders_have_the_genes_of_the_table_and_the_others_as_drawn() -> None:
+def test_founders_have_the_genes_of_the_table_and_draw_the_others() -> None:
     with_table, without = Simulation(CONFIG, [7]), Simulation(CONFIG, [7])
     with_table.set_founders(TABLE)
     given, drawn = (each.worlds[0].agents()["genome"] for each in (with_table, without))
@@ -48,7 +48,7 @@ def test_a_run_with_a_table_is_repeatable_resumable_and_checked(tmp_path: Path) 
     repeated = run(RunPlan(config, [1, 2], 256, tmp_path / "again", 1, founders=again))
     assert (repeated.config_digest, repeated.world_digests) == (whole.config_digest, whole.world_digests)
     plain = run(RunPlan(CONFIG, [1, 2], 256, tmp_path / "plain", 1))
-    assert plain.config_digest != whole.config_digest, "another table is another condition"
+    assert plain.config_digest != whole.config_digest, "another table must be another condition"
     branched = branch(tmp_path / "half", tmp_path / "branch", steps=320, threads=1)
     assert branched.status == "finished"
     for name in ("whole", "half", "branch"):
@@ -61,7 +61,7 @@ def test_a_run_with_a_table_is_repeatable_resumable_and_checked(tmp_path: Path) 
     assert any("are not those of founders.csv" in str(finding) for finding in check_run(tmp_path / "whole").findings)
 
 
-def test_the_living_of_a_step_are_a_freezer(tmp_path: Path) -> None:
+def test_agents_alive_at_a_step_can_be_founders(tmp_path: Path) -> None:
     busy = load_config("baseline", overrides=[*QUICK, "hazard.kappa=0.5", "birth.kappa=0.02"])
     run(RunPlan(busy, [1, 2], 256, tmp_path / "old", 1))
     agents = open_run(tmp_path / "old").agents()
@@ -87,7 +87,7 @@ def test_genomes_of_another_shape_or_size_are_refused() -> None:
 
 
 def test_founders_of_several_species_are_given_and_checked(tmp_path: Path) -> None:
-    """A point whose gene only one species has, a gene that names its species, and those alive in a run."""
+    """A value for a gene that only one species has, a gene that names its species, and the living agents of a run."""
     config = mechanism_config("species that differ in everything")
     first: Path | None = None
     for index, source in enumerate(("normal=1", "prey.action=0.5,hunter.action=-0.5", "RUN")):

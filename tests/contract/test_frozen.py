@@ -1,4 +1,4 @@
-"""The policy `fixed`: agents that act by networks which never learn, new ones or those of a run."""
+"""The policy `fixed`: agents act by networks that never learn, either new ones or the networks of a run."""
 
 import numpy as np
 import pytest
@@ -31,14 +31,14 @@ BOTH = (
 
 @pytest.fixture(scope="module")
 def learned(tmp_path_factory):
-    """A run of two species that learn, at its end."""
+    """A finished run of two learning species."""
     folder = tmp_path_factory.mktemp("learned") / "run"
     settings = [each for each in BOTH if not each.startswith("species.fixed")] + ["species.fixed.body.radius=10"]
     run(RunPlan(load_config("baseline", overrides=settings), (1, 2), 256, folder, 1))
     return folder
 
 
-def test_networks_never_change_and_children_have_their_parents():
+def test_networks_never_change_and_children_inherit_them():
     simulation = make_simulation(*LIVELY, *EXACT)
     world = simulation.worlds[0]
     founders = world.view("params")[world.living].copy()
@@ -73,7 +73,7 @@ def test_threads_and_checkpoints_change_nothing(settings, saved_at):
     once.run(200)
     first, second = (make_simulation(*settings, seeds=(3,), threads=threads) for threads in (2, 1))
     first.run(saved_at)
-    second.run(5)  # whatever was there before is gone
+    second.run(5)  # restoring replaces this state
     second.engine.restore(0, first.engine.save(0))
     assert first.worlds[0].digest() == second.worlds[0].digest()
     second.run(200 - saved_at)
@@ -98,7 +98,7 @@ def test_founders_act_by_the_networks_of_a_run(learned, tmp_path):
     assert not {row.tobytes() for row in world.view("params")[others]} & given
 
 
-def test_a_run_keeps_its_networks_and_goes_on_with_the_same_bits(learned, tmp_path):
+def test_a_run_keeps_its_networks_and_continues_with_the_same_bits(learned, tmp_path):
     config = load_config("baseline", overrides=BOTH)
     networks = networks_from(str(learned), config)
 

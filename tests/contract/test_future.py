@@ -1,4 +1,4 @@
-"""Several futures of one world: they begin alike, each goes its own way, and one goes the way of the world itself."""
+"""Several futures of one world: they start alike and diverge, and one matches the future of the world itself."""
 
 from pathlib import Path
 
@@ -26,7 +26,7 @@ PREDATORS = ("world.rollout_steps=64", "learning.minibatch_size=32")
 
 @pytest.fixture(scope="module")
 def past(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two worlds up to the step from which one of them has several futures."""
+    """Two worlds, up to the step from which one of them has several futures."""
     folder = tmp_path_factory.mktemp("past") / "run"
     small_run(folder, AT, frames=37)
     return folder
@@ -34,7 +34,7 @@ def past(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def futures(past: Path) -> Path:
-    """Of the world of seed 2: its own, and two others."""
+    """Three futures of the world with seed 2: its own and two others."""
     branch(past, past.with_name("futures"), steps=STEPS, seeds=(2, 50, 51), of=2)
     return past.with_name("futures")
 
@@ -43,7 +43,7 @@ def test_the_future_with_the_worlds_own_seed_is_its_own(past: Path, futures: Pat
     branch(past, past.with_name("own"), steps=STEPS)
     own, ends = load_manifest(past.with_name("own")).world_digests[1], load_manifest(futures).world_digests
     assert ends[0] == own
-    assert len({own, *ends}) == 3, "the others go ways of their own"
+    assert len({own, *ends}) == 3, "the futures do not all differ"
 
 
 def test_futures_begin_with_the_same_agents(past: Path, futures: Path) -> None:
@@ -60,7 +60,7 @@ def test_futures_begin_with_the_same_agents(past: Path, futures: Path) -> None:
 
 
 @pytest.mark.more
-def test_futures_are_checked_computed_again_resumed_and_reported(futures: Path, tmp_path: Path) -> None:
+def test_futures_are_checked_replayed_resumed_and_reported(futures: Path, tmp_path: Path) -> None:
     manifest = load_manifest(futures)
     assert manifest.parent is not None
     assert (manifest.parent.seed, manifest.parent.step, manifest.seeds) == (2, AT, (2, 50, 51))
@@ -105,15 +105,13 @@ def test_a_device_has_the_same_futures(
         ((5, 5), 1, "seeds.*5"),
     ],
 )
-def test_futures_that_cannot_be_are_refused(
-    past: Path, seeds: tuple[int, ...] | None, of: int | None, says: str
-) -> None:
+def test_impossible_futures_are_refused(past: Path, seeds: tuple[int, ...] | None, of: int | None, says: str) -> None:
     with pytest.raises(ArgumentError, match=says):
         branch(past, past.with_name("never"), steps=STEPS, seeds=seeds, of=of)
     assert not past.with_name("never").exists()
 
 
-def test_a_simulation_gets_other_chances(past: Path) -> None:
+def test_reseeding_a_simulation_changes_only_its_future(past: Path) -> None:
     config = open_run(past).config
 
     def begun() -> hedon.Simulation:
@@ -125,7 +123,7 @@ def test_a_simulation_gets_other_chances(past: Path) -> None:
     same.reseed([1, 2])
     other.reseed([1, 50])
     digests = [[world.digest() for world in each.worlds] for each in (alone, same, other)]
-    assert digests[0] == digests[1] == digests[2], "nothing that is there changes"
+    assert digests[0] == digests[1] == digests[2], "reseeding changed the present state"
     for each in (alone, same, other):
         each.run(STEPS - AT)
     assert [world.digest() for world in same.worlds] == [world.digest() for world in alone.worlds]

@@ -1,4 +1,4 @@
-"""Agents that eat agents: who eats whom, what it brings, and that no energy is lost on the way."""
+"""Agents that eat agents: who eats whom, what the eater gains, and that no energy goes missing."""
 
 import numpy as np
 import pytest
@@ -32,18 +32,18 @@ def make(*overrides: str, top: bool = False) -> Simulation:
 
 
 def facing(x: float, y: float, target: tuple[float, float]) -> tuple[float, float, float]:
-    """An agent at (x, y) that heads to a point: heading 0 is along +y."""
+    """An agent at (x, y) that faces a point; heading 0 is along +y."""
     return x, y, float(np.arctan2(x - target[0], target[1] - y))
 
 
 def step(simulation: Simulation, steps: int = 1) -> dict[str, np.ndarray]:
-    """Steps; the dead of these steps, and of the living (species, energy) as `alive`."""
+    """Runs some steps; returns their deaths, and (species, energy) of the living as `alive`."""
     simulation.run(steps)
     agents = simulation.worlds[0].agents()
     return simulation.worlds[0].deaths() | {"alive": np.column_stack([agents["species"], agents["energy"]])}
 
 
-def test_prey_at_the_mouth_is_eaten_for_a_share_of_what_it_has_left():
+def test_prey_at_the_mouth_is_eaten_for_a_share_of_its_remaining_energy():
     simulation = make()
     set_scene(simulation, [(100, 100, 0.0), facing(100, 81, (100, 100))], species=[PREY, PREDATOR])
     after = step(simulation)
@@ -64,7 +64,7 @@ def test_only_the_mouth_eats():
     assert len(step(simulation, 3)["cause"]) == 0
 
 
-def test_prey_does_not_eat_predators_nor_prey():
+def test_prey_eats_neither_predators_nor_prey():
     simulation = make()
     set_scene(simulation, [facing(100, 100, (100, 81)), facing(100, 81, (100, 100))], species=[PREY, PREY])
     assert len(step(simulation, 3)["cause"]) == 0
@@ -77,7 +77,7 @@ def test_the_nearer_of_two_is_eaten():
     assert step(simulation)["agent_id"].tolist() == [1]
 
 
-def test_all_at_one_mouth_are_eaten_where_a_setting_says_so():
+def test_all_prey_at_one_mouth_are_eaten_if_a_setting_says_so():
     for sharing in ("one", "each"):
         simulation = make('world.prey_at_mouth="all"', f'world.prey_sharing="{sharing}"')
         set_scene(
@@ -95,7 +95,7 @@ def test_prey_can_be_worth_what_it_had_before_the_step():
     assert step(simulation)["alive"].tolist() == [[PREDATOR, pytest.approx(40 - 0.001 + SHARE * 40, abs=1e-4)]]
 
 
-def test_nothing_else_is_eaten_while_one_digests():
+def test_a_digesting_predator_eats_nothing_else():
     simulation = make("species.predator.sensor.mouth_spread=180")
     around = [(100, 119.5, 0.0), (100, 80.5, 0.0)]
     set_scene(simulation, [*around, (100, 100, 0.0)], species=[PREY, PREY, PREDATOR])
@@ -120,7 +120,7 @@ def test_two_eaters_of_one_agent(sharing, gains):
     assert len(won) == (2 if sharing == "one" else 1)  # the draw favors neither
 
 
-def test_who_is_eaten_eats_nothing():
+def test_an_agent_that_is_eaten_eats_nothing():
     simulation = make(top=True)
     chain = [(100, 100, 0.0), facing(100, 81, (100, 100)), facing(100, 62, (100, 81))]
     set_scene(simulation, chain, species=[PREY, PREDATOR, TOP])
@@ -139,7 +139,7 @@ def test_the_starved_are_not_eaten():
 
 @pytest.mark.parametrize("fidelity", ["corrected", "released"])
 def test_a_world_of_prey_and_predators_keeps_its_ledger_and_its_bits(fidelity):
-    """The audit of each window closes the ledger of each species; threads and a restore change no bit."""
+    """The audit of each window checks the ledger of each species; threads and a restore change no bit."""
 
     def lived(threads: int) -> Simulation:
         many = ("hazard.kappa=0.02", "species.predator.population.initial_count=45")

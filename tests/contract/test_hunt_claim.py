@@ -1,4 +1,4 @@
-"""Who eats whom where everybody may eat everybody: crowds of random headings, against plain Python."""
+"""Who eats whom if every agent may eat every other: crowds with random headings, compared with plain Python."""
 
 import numpy as np
 import pytest
@@ -9,11 +9,11 @@ from hedon.experiment.simulation import Simulation
 
 RADIUS, HALF_MOUTH = 10.0, 26.0
 MARGIN = 3.0
-"""A mouth's end is no nearer to a contact than this, since bodies move a bit first; a mouth holds one body [degree]."""
+"""Least angle between a mouth's edge and a contact, since bodies move a bit first; a mouth holds one body [degree]."""
 SHARES = np.array([[0.6, 0.25, 0.9], [0.5, 0.1, 0.3], [0.8, 0.4, 0.7]])
-"""What each of three species gains by each."""
+"""The share of energy that each species (row) gains by eating each species (column)."""
 HUNT = 16
-"""The number of the purpose of draws between eaters."""
+"""The purpose number of the draws between eaters."""
 
 
 def make(sharing: str, seed: int) -> Simulation:
@@ -57,7 +57,7 @@ def crowd(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def ahead(places: np.ndarray, headings: np.ndarray, i: int) -> dict[int, float]:
-    """The bodies that touch body `i`, with the angle at which it has each: 0 straight ahead [degree]."""
+    """The bodies that touch body `i`, with the angle at which it sees each: 0 is straight ahead [degree]."""
     apart = places - places[i]
     near = [j for j in np.flatnonzero(np.hypot(*apart.T) < 2 * RADIUS) if j != i]
     angles = {j: np.degrees(np.arctan2(-apart[j, 0], apart[j, 1]) - headings[i]) for j in near}  # heading 0 is +y
@@ -65,7 +65,7 @@ def ahead(places: np.ndarray, headings: np.ndarray, i: int) -> dict[int, float]:
 
 
 def claims(places: np.ndarray, headings: np.ndarray, after: np.ndarray) -> dict[int, int]:
-    """Whom each would eat: the nearest in its mouth, where bodies are after the physics of the step."""
+    """The prey each would eat: the nearest in its mouth, given where bodies are after the physics of the step."""
     found = {}
     for i in range(len(places)):
         inside = [j for j, angle in ahead(places, headings, i).items() if abs(angle) <= HALF_MOUTH]
@@ -75,7 +75,7 @@ def claims(places: np.ndarray, headings: np.ndarray, after: np.ndarray) -> dict[
 
 
 def settle(wanted: dict[int, int], sharing: str, draw: list[int]) -> list[tuple[int, int]]:
-    """Which claims hold."""
+    """The claims that succeed, as (eater, prey)."""
     if sharing == "each":
         return list(wanted.items())
     held, open_claims = [], dict(wanted)
@@ -89,7 +89,7 @@ def settle(wanted: dict[int, int], sharing: str, draw: list[int]) -> list[tuple[
 
 
 def step(sharing: str, seed: int, scene: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places after the physics, energies and whether they were eaten, of each body of a scene."""
+    """The place after the physics, the energy, and whether it was eaten, for each body of a scene."""
     places, headings, energies, species = scene
     simulation = make(sharing, seed)
     x, y = (np.ascontiguousarray(column, np.float32) for column in places.T)
@@ -135,8 +135,8 @@ def test_crowds_are_settled_as_in_plain_python(sharing):
     assert min(chains, rivals, mutual) > 50
 
 
-def test_where_each_gains_the_order_of_ids_decides_nothing():
-    """The same bodies, made in other orders, have the same fates, whatever they claim of one another."""
+def test_if_each_eater_gains_the_order_of_ids_decides_nothing():
+    """The same bodies, created in another order, have the same fates, whatever they claim."""
     for seed in range(20):
         rng = np.random.default_rng(100 + seed)
         places, headings, energies = crowd(rng)
