@@ -1,4 +1,4 @@
-"""What a child gets: a network of its parent's, genes of two parents, thresholds by genes."""
+"""What a child inherits: its parent's network, genes of two parents, thresholds set by genes."""
 
 import math
 
@@ -18,7 +18,7 @@ def networks(world) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("network", "noise"), [("learned", 0.0), ("initial", 0.0), ("learned", 0.02)])
-def test_a_child_gets_the_network_that_the_setting_says(network, noise):
+def test_a_child_gets_the_network_that_the_setting_specifies(network, noise):
     settings = (*CALM, f"birth.network={network}", f"birth.network_noise={noise}", "learning.learning_rate=0.01")
     simulation = make_simulation(*settings, "birth.kappa=0.005", "birth.beta=10")
 
@@ -31,7 +31,7 @@ def test_a_child_gets_the_network_that_the_setting_says(network, noise):
     before = by_id()
     moved = np.mean([np.abs(before[i] - start[i]).mean() for i in start])
     assert moved > 1e-3  # two windows of learning
-    simulation.run(20)  # nobody learns in these steps
+    simulation.run(20)  # no agent learns in these steps
     source = before if network == "learned" else start
     lives, now = simulation.worlds[0].agents(), by_id()
     parents = dict(zip(lives["agent_id"].tolist(), lives["parent_id"].tolist(), strict=True))
@@ -65,7 +65,7 @@ def test_an_instinct_is_passed_on_over_generations_and_checkpoints():
     world = one.worlds[0]
     assert world.agents()["generation"].max() >= 2
     kept = world.view("initial_params")[world.living]
-    # Nobody was born with another network than a founder's.
+    # Every agent was born with a founder's network.
     assert all((np.abs(first - own).max(axis=1) == 0).any() for own in kept)
 
 
@@ -113,8 +113,8 @@ def test_mates_must_be_near(apart, born):
     assert (simulation.worlds[0].alive > 2) is born
 
 
-def test_a_parent_waits_only_so_long():
-    """The chance of a draw is small, so two parents rarely meet in one step; a window lets them."""
+def test_a_parent_waits_for_a_mate_only_for_a_while():
+    """The chance of a draw is small, so two parents are rarely ready in the same step; a window helps them meet."""
 
     def births(window: int) -> int:
         settings = ("birth.kappa=0.004", "birth.beta=10", f"birth.mating_window={window}", "birth.mating_range=500")
@@ -126,7 +126,7 @@ def test_a_parent_waits_only_so_long():
     assert births(100) > 5
 
 
-def test_nobody_mates_alone_or_with_another_species():
+def test_no_agent_mates_alone_or_with_another_species():
     alone = make_simulation(*CALM, *FERTILE, *PAIRS, "birth.mating_range=1000")
     set_scene(alone, [(200, 200, 0.0)])
     alone.run(5)
@@ -143,7 +143,7 @@ def test_nobody_mates_alone_or_with_another_species():
     assert mixed.worlds[0].alive == 2
 
 
-def test_mating_is_the_same_over_threads_and_restored():
+def test_threads_and_a_restore_do_not_change_mating():
     settings = (*QUICK, *PAIRS, "birth.kappa=0.02", "birth.beta=10", "birth.mating_range=40")
     one, two = make_simulation(*settings), make_simulation(*settings, threads=2)
     one.run(192)

@@ -1,4 +1,4 @@
-"""Stores beside energy, against their equations in NumPy."""
+"""Stores other than energy, compared with their equations in NumPy."""
 
 import math
 
@@ -75,7 +75,7 @@ def test_toxin_takes_its_share_of_the_force():
 
 
 def test_an_empty_store_raises_the_hazard():
-    """Deaths in many agents at full energy and no nutrient, against the chance in closed form."""
+    """Deaths among many agents with energy but no nutrient, compared with the probability in closed form."""
 
     def died(share: float) -> int:
         settings = ("population.capacity=150", "population.initial_count=150", "arena.width=900", "arena.height=900")
@@ -87,10 +87,10 @@ def test_an_empty_store_raises_the_hazard():
         return 150 - simulation.worlds[0].alive
 
     x = 0.02
-    chance = 0.2 * 5 * 0.05 * x / (1 + x)  # a share of 1 of the hazard at an empty store
+    chance = 0.2 * 5 * 0.05 * x / (1 + x)  # the hazard of an empty store at a weight of 1
     expected = 150 * (1 - (1 - chance) ** 64)
     assert abs(died(1.0) - expected) < 4 * math.sqrt(expected)
-    assert died(0.0) <= 1  # at 40 energy the hazard is nearly 0
+    assert died(0.0) <= 1  # with 40 units of energy, the hazard is nearly 0
 
 
 def test_a_child_gets_its_share_and_no_toxin():
@@ -112,7 +112,7 @@ def test_a_child_gets_its_share_and_no_toxin():
 
 
 @pytest.mark.parametrize(("scaling", "factors"), [("raw", (1, 1)), ("unit", (0.01, 0.1))])
-def test_what_is_observed(scaling, factors):
+def test_stores_are_observed(scaling, factors):
     simulation = make_simulation(
         *ALONE, *ALL_EAT, *NUTRIENT, *TOXIN, 'sensor.smells=["normal"]', f"sensor.scaling={scaling}"
     )
@@ -130,8 +130,8 @@ def test_what_is_observed(scaling, factors):
     assert "nutrient" in observation_columns(blind, "agent")
 
 
-def test_drive_reduction_counts_all_states():
-    """Homeostasis over energy, nutrient and toxin: the need before less the need after, with set points as genes."""
+def test_drive_reduction_counts_all_stores():
+    """Homeostasis of energy, nutrient and toxin: the need before minus the need after, with genes as set points."""
     settings = ("reward.drive_reduction_coef=1", "reward.meal_coef=0", "reward.action_coef=0", "energy.basic_cost=0.5")
     points = {"energy": 0.3, "store.nutrient": 0.5, "store.toxin": 0.1}
     genes = [f"{name}.set_point.initial_{what}" for name in points for what in ("mean", "sd")]
@@ -223,7 +223,7 @@ def test_contradictions_are_refused_by_name(settings, message):
         load_config("baseline", overrides=settings)
 
 
-def test_who_lacks_what_a_food_needs_leaves_it():
+def test_an_agent_that_lacks_what_a_food_needs_leaves_it():
     settings = ("store.salt={capacity=9, initial=1.0, basic_cost=0.25}", "food.normal.gives.salt=0.1")
     for need, eats in ((1.0, True), (1.001, False)):
         simulation = make_simulation(*ALONE, *ALL_EAT, *STILL, *settings, f"food.normal.needs.salt={need}")

@@ -1,4 +1,4 @@
-"""What the interpreter and the system do to a simulation's threads: exits, sub-interpreters, no more threads."""
+"""How the interpreter and the system affect a simulation's threads: exits, sub-interpreters, thread limits."""
 
 import importlib.util
 import subprocess
@@ -31,7 +31,7 @@ print("left")
 
 @pytest.mark.parametrize("steps", [1, 10**9])
 @pytest.mark.parametrize("threads", [1, 2])
-def test_a_program_leaves_while_a_daemon_thread_runs(threads, steps):
+def test_a_program_exits_while_a_daemon_thread_runs(threads, steps):
     code = DAEMON.format(threads=threads, steps=steps)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stdout.strip(), done.stderr) == (0, "left", "")
@@ -90,7 +90,7 @@ print(simulation.worlds[0].step)
 """
 
 
-def test_where_the_system_gives_no_more_threads_one_error_says_so_and_nothing_stays():
+def test_running_out_of_threads_gives_one_error_and_leaves_nothing_behind():
     done = subprocess.run([sys.executable, "-c", LIMITED], capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stderr) == (0, "")
     *said, last = done.stdout.splitlines()

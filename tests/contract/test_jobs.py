@@ -1,4 +1,4 @@
-"""Several runs at a time: they end as they would alone, whatever interrupts them, and one that fails harms no other."""
+"""Concurrent runs end as they would alone, even after interruptions, and a failing run does not harm the others."""
 
 import io
 import os
@@ -22,7 +22,7 @@ STEPS = 640
 
 
 class Interrupting(JobDisplay):
-    """A display that presses Ctrl-C when a run has come so far."""
+    """A display that sends Ctrl-C when a run reaches a given step."""
 
     def __init__(self, jobs: list[RunJob], at_step: int) -> None:
         super().__init__(Console(file=io.StringIO()), jobs)
@@ -46,7 +46,7 @@ def printed_display(jobs: list[RunJob]) -> tuple[io.StringIO, JobDisplay]:
     return stream, JobDisplay(Console(file=stream, width=200), jobs)
 
 
-def test_runs_side_by_side_are_those_made_alone(tmp_path: Path) -> None:
+def test_concurrent_runs_equal_runs_made_alone(tmp_path: Path) -> None:
     jobs = [a_job(tmp_path / "a"), a_job(tmp_path / "b", growth=1.0)]
     stream, display = printed_display(jobs)
     with display:
@@ -59,14 +59,14 @@ def test_runs_side_by_side_are_those_made_alone(tmp_path: Path) -> None:
         assert f"{tmp_path / name}: finished, step {STEPS}" in stream.getvalue()
 
 
-def test_an_interrupted_plan_goes_on_to_the_same_end(tmp_path: Path) -> None:
+def test_an_interrupted_plan_continues_to_the_same_end(tmp_path: Path) -> None:
     steps = 6400
     jobs = [a_job(tmp_path / "a", steps=steps), a_job(tmp_path / "b", steps=steps)]
     outcomes = make_here(jobs, 2, Interrupting(jobs, 1))
-    assert outcomes == {tmp_path / "a": Outcome("interrupted")}, "the second had not begun, and must not begin"
+    assert outcomes == {tmp_path / "a": Outcome("interrupted")}, "the second run had not started and must not start"
     done = load_manifest(tmp_path / "a").steps_done[0]
     assert 0 < done < steps
-    assert done % 64 == 0, "a single Ctrl-C ends a run at the end of a window"
+    assert done % 64 == 0, "a single Ctrl-C must end a run at the end of a window"
     assert not (tmp_path / "b").exists()
     again = [a_job(tmp_path / "a", steps=steps)]
     assert make_here(again, 2, printed_display(again)[1]) == {tmp_path / "a": Outcome("finished")}
@@ -96,7 +96,7 @@ def test_a_run_that_fails_leaves_the_others_alone(tmp_path: Path) -> None:
         ((), 2, []),
     ],
 )
-def test_each_world_has_a_thread_and_the_last_run_what_is_left(
+def test_each_world_has_a_thread_and_the_last_run_gets_the_rest(
     worlds: tuple[int, ...], threads: int, shares: list[int]
 ) -> None:
     config = load_config("baseline")
@@ -108,7 +108,7 @@ def test_each_world_has_a_thread_and_the_last_run_what_is_left(
     assert begun == shares
 
 
-def test_no_job_is_no_work() -> None:
+def test_no_jobs_need_no_work() -> None:
     stream, display = printed_display([])
     with display:
         assert make_here([], 2, display) == {}

@@ -1,4 +1,4 @@
-"""Every kernel against the portable one, and AVX2 against AVX-512 bit by bit."""
+"""Every kernel compared with the portable one, and AVX2 with AVX-512 bit by bit."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def gradient(kernel: str, case: Case, **changes: object) -> tuple[np.ndarray, tu
 
 
 def edge_cases(shape: Sizes) -> dict[str, Case]:
-    """Rollouts at the borders of what an agent can see and be."""
+    """Rollouts with extreme observations, weights and probabilities."""
     rays, types, touches, dense = shape
     count = 80
     one = np.ones((count, rays), np.float32)
@@ -86,7 +86,7 @@ def test_avx2_and_avx512_give_the_same_bits(shape: Sizes, target: str):
 
 @pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("place", ["params", "dense", "ray", "advantage", "action", "log_prob", "target"])
-def test_nan_comes_out_and_nothing_hangs(kernel: str, place: str):
+def test_nan_propagates_and_nothing_hangs(kernel: str, place: str):
     case = random_case(8, ONE_KIND_RAW, 64)
     if place == "params":
         case.params[70 * 64] = np.nan
@@ -106,7 +106,7 @@ def test_nan_comes_out_and_nothing_hangs(kernel: str, place: str):
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-def test_forward_gives_what_the_gradient_sees(kernel: str):
+def test_forward_gives_the_value_that_the_gradient_uses(kernel: str):
     case = random_case(9, ONE_KIND_RAW, 64)
     value = learning.forward(kernel, ONE_KIND_RAW, case.params, case.observation)[:, 2]
     case.target = value.copy()

@@ -1,7 +1,7 @@
 """Units compiled for one instruction set define nothing but their table.
 
-An inline function that such a unit emitted could be the copy that the linker keeps for the whole program;
-it would crash on processors without that instruction set.
+The linker could keep an inline function emitted by such a unit for the whole program,
+which would then crash on processors without that instruction set.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ IS_ARM = platform.machine() in ("aarch64", "arm64")
 
 
 def unit_flags(name: str) -> list[str]:
-    """The flags that CMakeLists.txt gives to this unit."""
+    """The compiler flags that CMakeLists.txt sets for this unit."""
     if name in ("portable", "neon"):
         return []
     found = re.search(rf'engine/kernel/{name}\.cpp PROPERTIES\s+COMPILE_OPTIONS "([^"]+)"', CMAKE)

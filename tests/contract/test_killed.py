@@ -1,4 +1,4 @@
-"""Runs that are killed at any moment lose nothing that came before a checkpoint, and end with the same bits.
+"""Runs killed at any moment lose nothing from before a checkpoint and end with the same bits.
 
 HEDON_KILLS sets how many times runs are killed; the default keeps the test short.
 """
@@ -21,12 +21,12 @@ from hedon.record.reader import open_run
 
 KILLS = int(os.environ.get("HEDON_KILLS", "10"))
 DELAY = 0.6
-"""Longest time before a signal: about as long as a run takes to start and make some hundred steps [s]."""
+"""Longest delay before a signal: about what a run takes to start and do a few hundred steps [s]."""
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """A run that nobody disturbed."""
+    """An undisturbed run."""
     folder = tmp_path_factory.mktemp("left alone") / "run"
     killed_run.go(folder, checkpoint_seconds=1e9)
     run = open_run(folder)
@@ -37,11 +37,11 @@ def whole(tmp_path_factory):
 
 
 def is_writing(pid: int, place: Path) -> bool:
-    """Whether a process has a file without a name, or with a passing one, open in a folder."""
+    """Whether a process has an unnamed or temporary file open in a folder."""
     links = []
-    with suppress(OSError):  # it ended
+    with suppress(OSError):  # the process ended
         for name in os.listdir(f"/proc/{pid}/fd"):
-            with suppress(OSError):  # it closed this one meanwhile
+            with suppress(OSError):  # the file was closed in the meantime
                 links.append(os.readlink(f"/proc/{pid}/fd/{name}"))
     return any(link.startswith(f"{place}/") and link.endswith((".tmp", "(deleted)")) for link in links)
 
@@ -67,7 +67,7 @@ def hit(process, folder: Path, way: str, draw: random.Random) -> None:
 
 
 def check_between(folder: Path, before: list[int]) -> list[int]:
-    """What must hold of a run at any time; returns the steps of its checkpoints."""
+    """Checks what must always hold for a run; returns the steps of its checkpoints."""
     kept = [int(path.stem.removeprefix("step-")) for path in checkpoint_paths(folder)]
     assert not before or kept[-1] >= before[-1], "a checkpoint was lost"
     assert len(kept) <= 3  # while the oldest is being removed
@@ -106,8 +106,8 @@ def test_runs_survive_being_killed_at_any_moment(tmp_path, whole, capsys):
     assert exits[-signal.SIGKILL] >= KILLS // 4, "most kills came too late"
 
 
-def test_a_file_that_is_being_written_is_seen(tmp_path):
-    """Else the kills "in" a folder above would come at any other moment."""
+def test_a_file_that_is_being_written_is_detected(tmp_path):
+    """Otherwise, the kills "in" a folder above would come at arbitrary moments."""
     seen = []
     write_atomically(tmp_path / "file", lambda file: seen.append(is_writing(os.getpid(), tmp_path)))
     assert seen == [True]

@@ -1,4 +1,4 @@
-"""Genes that set learning, against worlds whose config sets the same."""
+"""Genes that set learning parameters, compared with worlds whose config sets the same values."""
 
 import math
 
@@ -47,8 +47,8 @@ def log_sd(simulation: Simulation) -> np.ndarray:
 
 
 @pytest.mark.parametrize("inheritance", [(), RELEASED])
-def test_newborns_act_as_their_own_gene_says(inheritance):
-    """At birth, or where genomes are drawn when the window ends, then."""
+def test_newborns_have_the_action_sd_of_their_own_gene(inheritance):
+    """From birth or, if genomes are drawn at the end of a window, from then on."""
     simulation = make_simulation(
         *QUICK,
         *DEATHLESS,

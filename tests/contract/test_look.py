@@ -1,4 +1,4 @@
-"""A kind of food that looks like another one: rays cannot tell them apart, and everything else can."""
+"""A kind of food that looks like another: only rays cannot tell them apart."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ ALONE = (*QUICK, *STILL, *DEATHLESS, *CHILDLESS, "reward.pay.see_normal.gene.ini
 
 
 def looked_at(kind: int, *settings: str) -> tuple[np.ndarray, float]:
-    """What an agent reads with a food before it, and what it is paid for the step."""
+    """The readings of an agent that faces a food item, and its reward for the step."""
     simulation = make_simulation(*ALONE, *DECOY, *settings, preset="baseline")
     set_scene(simulation, [(100, 100, 0.0)], [(100, 125)], [kind])
     world = simulation.worlds[0]
@@ -44,7 +44,7 @@ def test_observations_have_no_rays_of_a_decoy_but_feel_it():
     assert {name for name in columns if name not in plain} == {f"touch_decoy_{i}" for i in range(6)}
 
 
-def test_who_eats_a_decoy_gets_what_it_gives_and_is_paid_for_the_meal():
+def test_an_agent_that_eats_a_decoy_gets_what_it_gives_and_is_paid_for_the_meal():
     settings = (
         *ALONE,
         *DECOY,
@@ -72,17 +72,17 @@ def test_who_eats_a_decoy_gets_what_it_gives_and_is_paid_for_the_meal():
         (("reward.pay.see_decoy.coef=1",), "there is no channel 'see_decoy'"),
     ],
 )
-def test_what_cannot_be_is_named(settings, says):
+def test_impossible_settings_are_named(settings, says):
     with pytest.raises(ConfigError, match=says):
         load_config("baseline", overrides=[*DECOY, *settings])
 
 
-def test_a_look_counts_in_digests_only_where_there_is_one():
+def test_a_look_changes_digests_only_if_there_is_one():
     plain, other = (
         load_config("baseline", overrides=[*DECOY, f'food.decoy.looks_like="{like}"']) for like in ("", "normal")
     )
     assert digest(plain) != digest(other)
-    # As it was before the setting.
+    # The same as before the setting existed.
     assert digest(load_config("baseline")) == "2087a81e05045bdcba911792a5019c4820a60a57988a3e577725d88b17329e83"
     assert digest(other.with_("food.decoy.looks_like", "")) == digest(plain)
 

@@ -1,6 +1,6 @@
-"""Records follow the mechanisms of a world, not the number of its species; and every door takes such runs.
+"""Records depend on the mechanisms of a world, not on its number of species, and every command accepts such runs.
 
-Each world combines mechanisms in which its species differ: who eats whom, who starves, who mates, who has which genes.
+The species of each world differ in their mechanisms: who eats whom, who starves, who mates and who has which genes.
 """
 
 from collections.abc import Iterator
@@ -28,14 +28,14 @@ HUNTS = {"deaths_eaten", "energy_hunted", "energy_prey"}
 
 @pytest.fixture(scope="module", params=WORLDS)
 def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run of two worlds in one piece."""
+    """An uninterrupted run of two worlds."""
     folder = tmp_path_factory.mktemp("mechanism") / "run"
     mechanism_run(mechanism_config(request.param), folder)
     return folder
 
 
 def ledgers(run: Run) -> Iterator[tuple[pl.DataFrame, pl.DataFrame]]:
-    """The rows of the tables `population` and `agents` of each species of each world."""
+    """The rows of the tables `population` and `agents` for each species of each world."""
     population, agents = run.population(), run.agents()
     for seed in run.manifest.seeds:
         for species in run.columns.species:
@@ -56,7 +56,7 @@ def test_columns_follow_from_mechanisms(made: Path) -> None:
 
 
 def test_causes_and_hunts_are_counted(made: Path) -> None:
-    """The two tables agree, and what the eaters had is what the eaten were."""
+    """The two tables agree, and the meals of the eaters match the agents that were eaten."""
     run = open_run(made)
     agents, population = run.agents(), run.population()
     if not run.columns.has_causes:
@@ -70,7 +70,7 @@ def test_causes_and_hunts_are_counted(made: Path) -> None:
     for name in run.columns.prey:
         own = pl.col("species") == name if run.columns.several else pl.lit(value=True)
         eaten = population.filter(own)["deaths_eaten"].sum()
-        assert eaten > 0, "the world shows no hunt: it tests nothing"
+        assert eaten > 0, "the world has no hunt, so it tests nothing"
         assert agents[f"eaten_{name}"].sum() == population[f"eaten_{name}"].sum()
         assert agents[f"eaten_{name}"].sum() >= eaten if each else agents[f"eaten_{name}"].sum() == eaten
 
@@ -99,8 +99,8 @@ def test_a_branch_keeps_its_counts_and_cannot_begin_to_starve(tmp_path: Path) ->
         branch(tmp_path / "run", tmp_path / "no", ['energy.at_zero="floor"'], steps=STEPS)
 
 
-def test_a_manifest_that_does_not_say_has_the_columns_of_its_time() -> None:
-    """Earlier versions gave several species all columns of causes and hunts, and one species none."""
+def test_an_older_manifest_has_the_columns_of_its_version() -> None:
+    """Earlier versions recorded all columns of causes and hunts for several species, and none for one species."""
     several = run_tables(Columns(("normal",), 1, species=("a", "b")))
     assert {"cause"} < set(several["agents"].polars_schema)
     assert HUNTS | {"deaths_starved"} < set(several["population"].polars_schema)

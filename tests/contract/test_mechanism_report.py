@@ -1,4 +1,4 @@
-"""Of worlds whose species differ, each species is told of apart: summaries, reports, sweeps, notebooks."""
+"""Summaries, reports, sweeps and notebooks treat each species of a world separately if they differ."""
 
 import io
 import json
@@ -85,7 +85,7 @@ def test_the_guide_counts_the_living_of_each_species_as_the_summary_does(differe
         assert told == {name: fare["alive_mean"] for name, fare in world["species"].items()}
 
 
-def test_every_ledger_closes_and_its_sums_say_so(run: Run) -> None:
+def test_every_ledger_closes_and_its_sums_agree(run: Run) -> None:
     for fare in fares(run_summary(run)):
         ledger = fare["ledger"]
         assert ledger["residual"] < 1e-6
@@ -123,7 +123,7 @@ def test_a_report_fits_what_each_species_eats(different: Run, tmp_path: Path) ->
     assert "pays for 0 of" not in text
     assert "It eats no food, but prey" in text
     assert "It eats nothing" in text
-    assert "| energy.at_zero |" not in text, "the hunters' is not a change of the run's own section"
+    assert "| energy.at_zero |" not in text, "the hunters' value is not a change in the run's own section"
     food = pl.read_csv(tmp_path / "analysis/food_world.csv")
     kinds = {name: set(food.filter(pl.col("condition").str.ends_with(name))["kind"]) for name in ("prey", "hunter")}
     assert kinds == {"prey": {"normal", "poison"}, "hunter": {"prey"}}
@@ -155,10 +155,10 @@ def test_a_world_knows_what_its_species_eat_and_inherit(different: Run) -> None:
     assert worlds["prey"].food_kinds == ("normal", "poison")
     assert (worlds["hunter"].food_kinds, worlds["hunter"].prey) == ((), ("prey",))
     assert len(worlds["prey"].neutral_names) == 3 < len(worlds["hunter"].neutral_names)
-    assert worlds["late"].extinct_step == 0, "it was never there"
+    assert worlds["late"].extinct_step == 0, "the species was never present"
     assert all(worlds[name].apart_step == 0 for name in ("prey", "hunter", "idle"))
     regime = regimes(worlds["hunter"].population, worlds["hunter"].config, species="hunter")
-    assert np.isnan([each["uptake"] for each in regime]).all(), "who eats no food takes up none"
+    assert np.isnan([each["uptake"] for each in regime]).all(), "a species that eats no food takes up none"
 
 
 def test_a_sweep_has_columns_per_species(different: Run) -> None:

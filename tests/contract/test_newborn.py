@@ -1,4 +1,4 @@
-"""Newborns that inherit at the window's end: until then they act and are paid by what their slot had before."""
+"""Newborns that inherit at the end of a window: until then, they use what their slot held before."""
 
 import numpy as np
 from worlds import DEATHLESS, QUICK, make_simulation
@@ -17,7 +17,7 @@ def test_a_new_world_has_a_network_and_a_genome_in_every_slot():
         assert len(np.unique(by_slot(world, name), axis=0)) == 200
 
 
-def test_a_newborn_acts_and_is_paid_by_what_its_slot_had_until_the_window_ends():
+def test_a_newborn_keeps_its_slots_network_and_genome_until_the_window_ends():
     simulation = make_simulation(*LATE, "hazard.kappa=0.2", seeds=(3,))
     world, waiting, settled = simulation.worlds[0], 0, 0
     for _ in range(4 * WINDOW):
@@ -35,7 +35,7 @@ def test_a_newborn_acts_and_is_paid_by_what_its_slot_had_until_the_window_ends()
     assert waiting > settled > 50
 
 
-def test_the_network_that_a_newborn_gets_late_is_the_one_it_would_have_got_at_birth():
+def test_a_newborn_gets_the_same_network_late_as_it_would_at_birth():
     quiet = (*QUICK, *DEATHLESS, "birth.kappa=0.02")
     networks = []
     for rule in ("at_window_end", "at_birth"):

@@ -1,4 +1,4 @@
-"""Obstacles: where they stand, what rays and bodies meet, and the harm they do."""
+"""Obstacles: their places, their effect on rays and bodies, and the damage they do."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ DAMAGE = "obstacle.damage=0.5"
 
 
 def side_of(world, side: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Middle of a side of the only obstacle, unit vector along it, and the one that points out of the obstacle."""
+    """Midpoint of a side of the only obstacle, unit vector along it, and outward unit normal."""
     corners = world.obstacles[0].astype(float)
     a, b = corners[side], corners[(side + 1) % len(corners)]
     along = (b - a) / np.linalg.norm(b - a)
@@ -20,12 +20,12 @@ def side_of(world, side: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def heading_to(direction: np.ndarray) -> float:
-    """The heading that looks along a direction."""
+    """The heading along a direction."""
     return float(np.arctan2(-direction[0], direction[1]) % (2 * np.pi))
 
 
 def beside(simulation, distance: float, towards: bool = True) -> None:
-    """Puts one agent beside the middle of a side, at a distance of its center."""
+    """Puts the center of one agent at a distance from the midpoint of a side."""
     middle, _, out = side_of(simulation.worlds[0])
     x, y = middle + distance * out
     set_scene(simulation, [(x, y, heading_to(-out if towards else out))])
@@ -82,7 +82,7 @@ def test_nothing_appears_in_or_on_an_obstacle():
             assert distance_to(corners, places).min() > radius - 0.01
 
 
-def test_a_ray_reads_an_obstacle_as_a_type_of_its_own():
+def test_a_ray_reads_an_obstacle_as_a_separate_type():
     simulation = make_simulation(*ONE, "sensor.ray_count=1")
     beside(simulation, 70.0)
     world = simulation.worlds[0]
@@ -96,7 +96,7 @@ def test_touch_costs_once_per_obstacle_and_step_and_is_felt():
     simulation = make_simulation(*ONE, *STILL, DAMAGE, "energy.basic_cost=0")
     corners = simulation.worlds[0].obstacles[0].astype(float)
     outward = corners[0] - corners.mean(axis=0)
-    x, y = corners[0] + 9.5 * outward / np.linalg.norm(outward)  # touches the two sides that meet in the corner
+    x, y = corners[0] + 9.5 * outward / np.linalg.norm(outward)  # touches the two sides that meet at the corner
     set_scene(simulation, [(x, y, 0.0)])
     simulation.run(1)
     world = simulation.worlds[0]
@@ -117,7 +117,7 @@ def test_no_harm_without_touch():
     assert world.view("life.energy")[world.living] == pytest.approx([40.0], abs=1e-6)
 
 
-def test_the_schedule_says_how_many_do_harm_from_which_step():
+def test_the_schedule_sets_how_many_do_harm_from_which_step():
     simulation = make_simulation(
         *QUICK,
         "obstacle.count=8",
@@ -135,7 +135,7 @@ def test_the_schedule_says_how_many_do_harm_from_which_step():
 
 def test_damage_is_in_the_ledger_of_energy():
     simulation = make_simulation(*QUICK, "obstacle.count=8", DAMAGE)
-    simulation.run(640)  # an audit ends every window: it would find an open ledger
+    simulation.run(640)  # the audit at the end of every window would find an open ledger
     world = simulation.worlds[0]
     c = world.counters
     (damage,) = world.view("obstacle_counters.energy_damage")
@@ -145,7 +145,7 @@ def test_damage_is_in_the_ledger_of_energy():
     assert world.agents()["energy"].sum() == pytest.approx(flow, rel=1e-12)
 
 
-def test_bodies_do_not_enter_and_rub_by_the_obstacles_friction():
+def test_bodies_do_not_enter_and_are_slowed_by_the_obstacles_friction():
     def slid(friction: float) -> float:
         """How far an agent slides along a side that it pushes against at an angle."""
         simulation = make_simulation(
@@ -170,10 +170,10 @@ def test_bodies_do_not_enter_and_rub_by_the_obstacles_friction():
 
     smooth, rough = slid(0.0), slid(0.6)
     assert smooth > 10
-    assert 0 < rough < 0.6 * smooth  # it pushes at 45°, so friction takes 0.6 of what drives it along
+    assert 0 < rough < 0.6 * smooth  # it pushes at 45°, so friction removes 0.6 of the force along the side
 
 
-def test_the_same_over_threads_and_pieces():
+def test_threads_and_pieces_change_nothing():
     settings = (*QUICK, "obstacle.count=10", DAMAGE)
     one = make_simulation(*settings, seeds=[5])
     two = make_simulation(*settings, seeds=[5], threads=2)
@@ -184,7 +184,7 @@ def test_the_same_over_threads_and_pieces():
 
 
 def test_the_wrong_channel_pays_for_food():
-    """The setting by which the sequel's released program differs: what it calls the obstacle's rays are food's."""
+    """The setting that follows the sequel's program, whose rays for obstacles are in fact those for food."""
     common = ("reward.action_coef=0", "reward.meal_coef=0", "reward.pay.see_obstacle.gene.initial_mean=1")
 
     def paid(channel: str) -> float:

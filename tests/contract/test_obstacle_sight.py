@@ -1,4 +1,4 @@
-"""Obstacles on a grid, and what rays read of them by the fault of the sequel's program, against plain NumPy."""
+"""Obstacles on a grid, and how rays misread them with the fault of the sequel's program, compared with plain NumPy."""
 
 import re
 
@@ -21,24 +21,24 @@ def make(sight: str, *settings: str, seed: int = 1):
     return make_simulation(*SQUARE, f'obstacle.sight="{sight}"', *settings, seeds=[seed])
 
 
-def test_they_stand_in_the_middles_of_cells_and_turn_within_the_range():
+def test_obstacles_are_centered_in_cells_and_rotated_within_the_range():
     corners = np.concatenate([make("correct", seed=seed).worlds[0].obstacles for seed in range(1, 21)]).astype(float)
     cells = corners.mean(axis=1) / CELL - 0.5
     np.testing.assert_allclose(cells, np.round(cells), atol=1e-4)
     for world in np.round(cells).reshape(20, COUNT, 2):
         assert len({tuple(cell) for cell in world}) == COUNT
-    assert cells.min() < 0.5  # also at walls
+    assert cells.min() < 0.5  # cells at walls are included
     assert np.round(cells).max() == 23
     first = corners[:, 0] - corners.mean(axis=1)
     turn = np.arctan2(first[:, 1], first[:, 0]) - np.pi / 2
     assert -1e-4 < turn.min() < 0.05
     assert 0.95 < turn.max() < 1 + 1e-4
-    # An obstacle at a wall reaches beyond it.
+    # An obstacle at a wall extends beyond it.
     assert corners.min() < 0
 
 
 def misread(corners: np.ndarray, place: np.ndarray, heading: float) -> np.ndarray:
-    """What each ray reads of the obstacles, -1 for nothing: the fault, written anew."""
+    """What each ray reads of the obstacles, -1 for nothing: an independent version of the fault."""
     direction = np.stack([-np.sin(heading + ANGLES), np.cos(heading + ANGLES)], axis=-1)
     best = np.full(len(ANGLES), np.inf)
     for polygon in corners:
@@ -46,7 +46,7 @@ def misread(corners: np.ndarray, place: np.ndarray, heading: float) -> np.ndarra
         arm = polygon[0] - center
         turn = np.arctan2(arm[1], arm[0]) - np.pi / 2
         spin = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-        local = (polygon - center) @ spin  # the inverse: where its corners are in its own frame
+        local = (polygon - center) @ spin  # the inverse: its corners in its own frame
         start = (place + RADIUS * direction) @ spin.T + center  # the fault: the forward transform
         way = LENGTH * direction @ spin.T
         for r in range(len(ANGLES)):
@@ -61,7 +61,7 @@ def misread(corners: np.ndarray, place: np.ndarray, heading: float) -> np.ndarra
     return np.where(best <= 1, 1 - best, -1.0)
 
 
-def test_rays_read_by_the_fault_what_plain_python_says():
+def test_rays_with_the_fault_read_the_same_as_plain_python():
     rng = np.random.default_rng(3)
     read = right = false = 0
     both = []
@@ -70,22 +70,22 @@ def test_rays_read_by_the_fault_what_plain_python_says():
         corners = wrong.worlds[0].obstacles.astype(float)
         np.testing.assert_array_equal(corners, correct.worlds[0].obstacles)
         for _ in range(20):
-            x, y, heading = *rng.uniform(230, 730, 2), rng.uniform(0, 2 * np.pi)  # no wall is in reach
+            x, y, heading = *rng.uniform(230, 730, 2), rng.uniform(0, 2 * np.pi)  # no wall is within reach
             seen = []
             for simulation in (wrong, correct):
                 set_scene(simulation, [(x, y, heading)])
                 seen.append(simulation.worlds[0].rays()[0][:, 3].astype(float))
             expected = misread(corners, np.array([x, y], np.float32).astype(float), float(np.float32(heading)))
             near_edge = np.abs(expected - seen[0]) > 1e-3
-            assert near_edge.mean() <= 1 / 32  # where a ray just meets a line, either is right
+            assert near_edge.mean() <= 1 / 32  # if a ray just grazes a line, either reading is right
             both.append([each >= 0 for each in seen])
             read, right, false = read + (seen[0] >= 0).sum(), right + (seen[1] >= 0).sum(), false + 1
     assert min(read, right) > 0.05 * false * 32
-    # What is read has nothing to do with what is there, as a run of the sequel's program has shown: 0.01 to 0.08.
+    # Readings are almost uncorrelated with the obstacles, as in a run of the sequel's program: r = 0.01 to 0.08.
     assert abs(np.corrcoef(np.stack(both, axis=1).reshape(2, -1))[0, 1]) < 0.15
 
 
-def test_what_is_nearer_hides_what_the_fault_reads():
+def test_nearer_bodies_hide_what_the_fault_reads():
     simulation = make("released", "population.capacity=2", "population.initial_count=1")
     rng = np.random.default_rng(5)
     hidden = 0
@@ -115,6 +115,6 @@ def test_what_is_nearer_hides_what_the_fault_reads():
         ("obstacle.sight=right", 'obstacle.sight = "right": must be'),
     ],
 )
-def test_what_no_grid_can_have_is_refused(setting, message):
+def test_impossible_grids_are_refused(setting, message):
     with pytest.raises(ConfigError, match=re.escape(message)):
         load_config("baseline", overrides=["obstacle.count=3", "obstacle.max_angle=2", setting])

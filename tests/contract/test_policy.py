@@ -1,4 +1,4 @@
-"""Policies other than learning: what such agents do, and that they cost no learning."""
+"""Policies other than learning: what such agents do, and that they keep nothing for learning."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ BOTH = (
 
 
 def lone(policy, *settings, seeds=(1,)):
-    """A world in which nobody is born or dies, after 30 steps."""
+    """A world without births and deaths, after 30 steps."""
     simulation = make_simulation(*QUICK, *DEATHLESS, *CHILDLESS, f'learning.policy="{policy}"', *settings, seeds=seeds)
     simulation.run(30)
     return simulation.worlds[0]
@@ -38,7 +38,7 @@ def test_random_actions_are_standard_normals():
     assert abs(np.corrcoef(drawn.T)[0, 1]) < 5 / np.sqrt(len(drawn))
 
 
-def test_the_motors_of_the_still_never_run():
+def test_the_motors_of_idle_agents_never_run():
     world = lone("idle")
     agents = world.agents()
     for name in ("force_left", "force_right", "distance"):
@@ -46,7 +46,7 @@ def test_the_motors_of_the_still_never_run():
     assert world.counters["energy_action"] == 0.0
 
 
-def test_nobody_told_the_external_does_as_a_new_network_means():
+def test_an_external_policy_without_actions_acts_like_the_mean_of_a_new_network():
     agents = lone("external").agents()
     half = (-20.0 + 80.0) / 2
     np.testing.assert_allclose(agents["force_left"], 30 * half, rtol=1e-6)
@@ -54,13 +54,13 @@ def test_nobody_told_the_external_does_as_a_new_network_means():
 
 
 @pytest.mark.parametrize("policy", ["random", "idle", "external"])
-def test_who_does_not_learn_has_no_network(policy):
+def test_agents_that_do_not_learn_have_no_network(policy):
     simulation = make_simulation(*LIVELY, f'learning.policy="{policy}"')
     simulation.run(200)
     world = simulation.worlds[0]
     assert world.counters["learners"] == 0
     assert world.view("params").size == 0
-    assert world.view("observation").shape[1] == 2  # the present one, and the one after a window
+    assert world.view("observation").shape[1] == 2  # the current one, and the one after a window
     assert not {"params", "updates", "observation", "reward"} & set(simulation.engine.save(0))
 
 
@@ -83,7 +83,7 @@ def test_threads_and_checkpoints_change_nothing(settings, saved_at):
     once.run(200)
     first, second = (make_simulation(*settings, seeds=(3,), threads=threads) for threads in (2, 1))
     first.run(saved_at)
-    second.run(5)  # whatever was there before is gone
+    second.run(5)  # restoring replaces this state
     second.engine.restore(0, first.engine.save(0))
     assert first.worlds[0].digest() == second.worlds[0].digest()
     second.run(200 - saved_at)
@@ -91,7 +91,7 @@ def test_threads_and_checkpoints_change_nothing(settings, saved_at):
     assert once.worlds[0].counters["births"] > 0 < once.worlds[0].counters["deaths"]
 
 
-def test_late_inheritance_goes_without_networks():
+def test_late_inheritance_works_without_networks():
     settings = (*BOTH, 'world.inheritance="at_window_end"', 'world.parents="resident_slots"')
     once, other = (make_simulation(*settings, seeds=(3,)) for _ in range(2))
     once.run(90)
@@ -101,7 +101,7 @@ def test_late_inheritance_goes_without_networks():
     assert once.worlds[0].digest() == other.worlds[0].digest()
 
 
-def test_a_run_has_nobody_to_give_actions(tmp_path):
+def test_a_run_refuses_the_external_policy(tmp_path):
     config = load_config("baseline", overrides=['learning.policy="external"'])
     with pytest.raises(ArgumentError, match=r"learning\.policy: \"external\" takes actions from a program"):
         RunPlan(config, seeds=(1,), steps=10, out=tmp_path / "run")

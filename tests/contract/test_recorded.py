@@ -1,4 +1,4 @@
-"""What records, checks, exports, topics and forecasts make of two parents, obstacles and inner states."""
+"""How records, checks, exports, topics and forecasts handle two parents, obstacles and stores."""
 
 import shutil
 from pathlib import Path
@@ -45,7 +45,7 @@ def test_the_check_finds_nothing_and_the_ledger_has_the_damage(recorded: Run) ->
     assert places[0] != places[1]
 
 
-def test_a_second_parent_that_did_not_live_is_found(recorded: Run, tmp_path: Path) -> None:
+def test_a_child_whose_two_parents_are_one_is_found(recorded: Run, tmp_path: Path) -> None:
     copy = tmp_path / "copy"
     shutil.copytree(recorded.path, copy)
     path = copy / "agents" / "living.parquet"
@@ -56,7 +56,7 @@ def test_a_second_parent_that_did_not_live_is_found(recorded: Run, tmp_path: Pat
     assert any("its two parents are one" in str(each) for each in check_run(copy).findings)
 
 
-def test_pedigrees_of_two_parents_are_no_trees(recorded: Run) -> None:
+def test_pedigrees_of_two_parents_are_not_trees(recorded: Run) -> None:
     agents = pedigree(recorded, 1)
     both = alife_table(agents, ())["ancestor_list"].str.count_matches(",")
     assert both.to_list() == agents["mate_id"].is_not_null().cast(pl.UInt32).to_list()

@@ -1,4 +1,4 @@
-"""A run that was stopped and resumed has the records of one that was left alone, bit for bit."""
+"""A stopped and resumed run has the same records as an uninterrupted one, bit for bit."""
 
 import json
 import shutil
@@ -29,7 +29,7 @@ STEPS = 500
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """A run of two worlds with frames, left alone."""
+    """An uninterrupted run of two worlds with frames."""
     folder = tmp_path_factory.mktemp("left alone") / "run"
     small_run(folder, STEPS, frames=37)
     return folder
@@ -37,7 +37,7 @@ def whole(tmp_path_factory):
 
 @pytest.fixture
 def half(tmp_path):
-    """The same run, stopped in the midst of a window."""
+    """The same run, stopped in the middle of a window."""
     small_run(tmp_path / "run", 300, frames=37)
     return tmp_path / "run"
 
@@ -53,7 +53,7 @@ def test_a_resumed_run_is_the_run_left_alone(tmp_path, seeds, frames):
 
 
 @pytest.mark.smoke
-def test_a_run_may_be_taken_further_often_and_on_other_threads(tmp_path, whole):
+def test_a_run_may_be_resumed_often_and_on_other_threads(tmp_path, whole):
     small_run(tmp_path / "run", 10, frames=37)
     for steps, threads in ((74, 2), (75, 1), (129, 3), (400, 1), (STEPS, 2)):
         resume(tmp_path / "run", steps=steps, threads=threads, checkpoint_seconds=0)
@@ -74,7 +74,7 @@ def test_time_adds_up_over_sessions(half):
     assert after.started == before.started
 
 
-def test_worlds_die_out_alone(tmp_path):
+def test_worlds_die_out_independently(tmp_path):
     lethal = ("hazard.kappa=0.3", "energy.initial=0", "birth.kappa=0", "food.normal.growth_rate=0")
     small_run(tmp_path / "a", 3000, seeds=(1, 2, 3), overrides=lethal)
     extinct = load_manifest(tmp_path / "a").extinct_steps
@@ -86,28 +86,28 @@ def test_worlds_die_out_alone(tmp_path):
         resume(tmp_path / "b", steps=4000)
 
 
-def test_rows_after_the_checkpoint_are_taken_back(half, whole):
+def test_rows_after_the_checkpoint_are_removed(half, whole):
     first = checkpoint_paths(half)[0]
-    checkpoint_paths(half)[1].unlink()  # as if the run had been killed after these rows, before their checkpoint,
+    checkpoint_paths(half)[1].unlink()  # as if the run had been killed between these rows and their checkpoint,
     for table in TABLE_FOLDERS:  # and had written them in many more parts
         shutil.copy(part_paths(half, table)[-1], part_path(half, table, 57))
     rows = open_run(half).population().height
     with lock(half, STEPS) as found:
         assert found.step == 0
         assert checkpoint_paths(half) == [first]
-    assert open_run(half).population().height == rows, "looking changes nothing"
+    assert open_run(half).population().height == rows, "locking the folder changed its rows"
     resume(half, steps=STEPS)
     assert_same_run(half, whole)
 
 
-def test_what_is_finished_needs_more_steps(half):
+def test_a_finished_run_needs_more_steps(half):
     with pytest.raises(RecordError, match="has already done all its 300 steps: give a larger total with --steps"):
         resume(half)
     with pytest.raises(RecordError, match="has already done 300 steps"):
         resume(half, steps=200)
 
 
-def test_a_damaged_checkpoint_is_passed_over(half, whole):
+def test_a_damaged_checkpoint_is_skipped(half, whole):
     first, last = checkpoint_paths(half)
     last.write_bytes(last.read_bytes()[:-1000])
     with lock(half, STEPS) as found:
@@ -134,7 +134,7 @@ def test_without_checkpoints_records_are_left_alone(half):
 
 
 @pytest.mark.parametrize("damage", ["truncated", "altered", "missing"])
-def test_damaged_records_are_named_and_a_branch_still_goes_on(half, damage):
+def test_damaged_records_are_named_and_a_branch_still_works(half, damage):
     part = part_paths(half, "population")[0]
     data = part.read_bytes()
     if damage == "missing":
@@ -147,7 +147,7 @@ def test_damaged_records_are_named_and_a_branch_still_goes_on(half, damage):
 
 
 def spoil(folder, **changes):
-    """Rewrites the newest checkpoint with another head or other arrays, as somebody else might."""
+    """Rewrites the newest checkpoint with a different head or different arrays, as another program might."""
     path = checkpoint_paths(folder)[-1]
     old = load_checkpoint(path)
     arrays = changes.pop("arrays", old.arrays)
@@ -193,7 +193,7 @@ def test_a_run_keeps_its_instruction_set(tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(len(_engine.kernel.kernel_names()) < 2, reason="this processor has one instruction set")
-def test_other_bits_are_refused_and_the_same_bits_are_not(tmp_path, monkeypatch):
+def test_an_instruction_set_is_refused_only_if_its_bits_differ(tmp_path, monkeypatch):
     small_run(tmp_path / "run", 100)
     monkeypatch.setenv("HEDON_BACKEND", "portable")
     with pytest.raises(RecordError, match=r"instruction set .* HEDON_BACKEND is portable"):
@@ -218,7 +218,7 @@ def test_a_branch_without_changes_is_the_same_life(half, whole):
     assert resumed.parent == manifest.parent
 
 
-def test_a_branch_goes_another_way_from_any_kept_checkpoint(half, whole):
+def test_a_branch_diverges_from_any_kept_checkpoint(half, whole):
     out = half.with_name("branch")
     with pytest.raises(RecordError, match="has no checkpoint of step 64; it has those of steps 0, 300"):
         branch(half, out, at=64)
@@ -251,12 +251,12 @@ def test_a_branch_cannot_change_the_shape_of_a_world(half, setting):
     assert not half.with_name("branch").exists()
 
 
-def test_a_branch_into_fewer_slots_than_live_is_refused(half):
+def test_a_branch_with_fewer_slots_than_living_agents_is_refused(half):
     with pytest.raises(RecordError, match=r"does not fit: world 0: head\.living_count"):
         branch(half, half.with_name("branch"), ["population.capacity=4", "population.initial_count=4"], steps=STEPS)
 
 
-def test_runs_that_were_killed_before_their_first_checkpoint_begin_anew(tmp_path, whole):
+def test_runs_that_were_killed_before_their_first_checkpoint_start_over(tmp_path, whole):
     small_run(tmp_path / "run", STEPS, frames=37)
     for path in (tmp_path / "run").rglob("*"):
         if path.suffix in (".parquet", ".npz"):
@@ -284,7 +284,7 @@ def test_the_command_says_what_it_does(half, whole):
     found = load_manifest(half.with_name("run-branch500"))
     assert found.steps_done == (600, 600)
     world = json.loads((half.with_name("run-branch500") / "summary.json").read_text())["worlds"][0]
-    assert world["ledger"]["residual"] < 1e-6, "the ledger of a branch begins at the checkpoint"
+    assert world["ledger"]["residual"] < 1e-6, "the ledger of a branch must start at the checkpoint"
     assert world["steps_per_second"] * found.run_seconds == pytest.approx(100)
     for arguments, words in (
         (("resume", half), "give a larger total with --steps"),
@@ -309,17 +309,17 @@ def test_a_world_that_dies_out_before_the_checkpoint_of_its_window_is_computed_a
 
 
 def test_checkpoints_are_saved_at_the_ends_of_windows_and_once_at_the_end(tmp_path, monkeypatch):
-    """A checkpoint within a window would hold its rollouts, which are larger than all else."""
+    """A checkpoint within a window would hold its rollouts, which are larger than everything else."""
     saved, save = [], Writer.save_checkpoint
     monkeypatch.setattr(Writer, "save_checkpoint", lambda *given: [saved.append(given[1].step), save(*given)])
     small_run(tmp_path / "run", 40 * WINDOW, frames=10, checkpoint_seconds=0)
-    assert saved == [step * WINDOW for step in range(41)], "0 s asks for every end of a window"
+    assert saved == [step * WINDOW for step in range(41)], "0 s asks for a checkpoint at the end of every window"
     resume(tmp_path / "run", 40 * WINDOW + 5)
-    assert saved[-2:] == [40 * WINDOW, 40 * WINDOW + 5], "the last may be within a window"
+    assert saved[-2:] == [40 * WINDOW, 40 * WINDOW + 5], "the last checkpoint may be within a window"
 
 
-def test_what_goes_on_holds_its_old_checkpoint_no_longer(half, tmp_path):
-    """A file keeps its room on the disk while its arrays are in use, also after it is removed."""
+def test_a_continued_run_releases_its_old_checkpoint(half, tmp_path):
+    """A file takes up disk space while its arrays are in use, even after it is removed."""
 
     def held() -> list[str]:
         return [each.path for each in psutil.Process().memory_maps() if each.path.startswith(str(half))]
@@ -328,17 +328,17 @@ def test_what_goes_on_holds_its_old_checkpoint_no_longer(half, tmp_path):
         continue_run(found)
         assert held() == []
     plan = plan_branch(half, tmp_path / "branch", steps=STEPS + WINDOW)
-    assert plan.checkpoint.arrays, "nobody has restored it"
+    assert plan.checkpoint.arrays, "it has not been restored yet"
     start_branch(plan)
     assert held() == []
 
 
-def test_records_are_those_of_the_checkpoint_as_soon_as_a_run_goes_on(half, monkeypatch):
-    """Else a second kill would leave the living of a later moment beside them."""
+def test_records_match_the_checkpoint_as_soon_as_a_run_is_resumed(half, monkeypatch):
+    """Otherwise, a second kill would leave living agents of a later moment among them."""
     before = open_run(half).agents()
     resume(half, steps=STEPS, checkpoint_seconds=1e9)
     for path in checkpoint_paths(half)[1:]:
-        path.unlink()  # as a kill leaves it: records up to the end, and no later checkpoint
+        path.unlink()  # as after a kill: records up to the end, but no later checkpoint
     assert open_run(half).agents().height > before.height
     seen = []
 

@@ -1,4 +1,4 @@
-"""How weights follow from genes, and drive reduction: what is paid for a step, against closed forms."""
+"""How weights follow from genes, and drive reduction: the reward of a step, compared with closed forms."""
 
 import math
 
@@ -13,7 +13,7 @@ ENERGY = 40.0
 
 
 def paid(*settings: str, steps: int = 1) -> np.ndarray:
-    """What one agent that starts with 40 units of energy, and finds no food, is paid in each step."""
+    """The reward per step of one agent that starts with 40 units of energy and finds no food."""
     exact = ("genome.action.initial_sd=0", "genome.second.initial_sd=0", "energy.set_point.initial_sd=0")
     simulation = make_simulation(*QUICK, *DEATHLESS, "birth.kappa=0", *exact, *settings)
     set_scene(simulation, [(100, 100, 0.0)], energy=ENERGY)
@@ -23,7 +23,7 @@ def paid(*settings: str, steps: int = 1) -> np.ndarray:
 
 
 def weight(w: float, *settings: str, steps: int = 1) -> np.ndarray:
-    """The weight of action in each step: the reward, divided by that of a weight of 1."""
+    """The weight of action in each step: the reward divided by the reward for a weight of 1."""
     return paid(f"genome.action.initial_mean={w}", *settings, steps=steps) / paid(
         "genome.action.initial_mean=1", steps=steps
     )
@@ -66,7 +66,7 @@ def test_weights_that_change_with_age():
 
 
 @pytest.mark.parametrize(("set_point", "sign"), [(0.9, -1), (0.05, 1)])
-def test_drive_reduction_is_by_how_much_energy_comes_closer_to_the_set_point(set_point, sign):
+def test_drive_reduction_is_how_much_closer_energy_comes_to_the_set_point(set_point, sign):
     cost, capacity = 2.0, load_config("baseline").species["agent"].energy.capacity
     found = paid(
         *STILL,
@@ -81,7 +81,7 @@ def test_drive_reduction_is_by_how_much_energy_comes_closer_to_the_set_point(set
 
 @pytest.mark.parametrize(("exponent", "root"), [(4, 3), (1, 1), (3, 2), (2, 1)])
 def test_the_drive_has_the_exponent_and_the_root_of_its_settings(exponent, root):
-    """As in Keramati and Gutkin (2014), who write n and m."""
+    """As in Keramati and Gutkin (2014), who call them n and m."""
     energy, water = load_config("baseline").species["agent"].energy.capacity, 8.0
     found = paid(
         *STILL,
@@ -110,7 +110,7 @@ def test_the_exponents_of_a_drive_are_refused_as_genes_without_a_drive():
         load_config("baseline", overrides=["genome.set.reward.meal_coef={}"])
 
 
-def test_what_a_birth_takes_is_no_drive_reduction():
+def test_the_cost_of_a_birth_is_not_drive_reduction():
     capacity = load_config("baseline").species["agent"].energy.capacity
     simulation = make_simulation(
         *QUICK,
@@ -131,7 +131,7 @@ def test_what_a_birth_takes_is_no_drive_reduction():
     assert np.abs(world.view("reward")[world.living[0], :4]) == pytest.approx(0.1 / capacity, rel=1e-4)
 
 
-def test_second_genes_stand_beside_their_weights():
+def test_second_genes_follow_their_weights():
     by_age = "reward.gate=age"
     for family, ending, more in (("scaled", "_scale", []), ("between", "_old", [by_age]), ("between", "_above", [])):
         names = layouts(load_config("baseline", overrides=[f"reward.family={family}", *more]))["agent"].gene_names
@@ -172,7 +172,7 @@ def test_a_gene_mutates_by_its_own_law():
     assert changes["neutral_3"].min() < 0.02
 
 
-def test_what_a_gene_does_not_say_its_species_says():
+def test_what_a_gene_does_not_set_comes_from_its_species():
     config = load_config(
         "predator",
         overrides=[
@@ -208,7 +208,7 @@ def test_two_genes_cannot_have_one_name():
         )
 
 
-def test_genes_cannot_set_the_learning_of_who_does_not_learn():
+def test_genes_cannot_set_the_learning_of_agents_that_do_not_learn():
     with pytest.raises(ConfigError, match="there is no learning that genes could set"):
         load_config("baseline", overrides=["genome.learning.gamma.initial_sd=0.1", 'learning.policy="random"'])
 

@@ -1,4 +1,4 @@
-"""Rules in Python: what the engine pays by them, against the same rule in plain Python and against its own terms."""
+"""Rewards from Python rules, compared with the same rule in plain Python and with the engine's own terms."""
 
 import numpy as np
 import pytest
@@ -71,7 +71,7 @@ def paid(file, name, *settings, memory=0, threads=1, seeds=(3,)):
 
 
 def test_a_rule_that_repeats_the_terms_changes_nothing(file):
-    """Learning, births and deaths too: the rewards have the same bits."""
+    """Not even learning, births and deaths: the rewards have the same bits."""
     plain, ruled = make_simulation(*LIVELY, seeds=(3,)), paid(file, "same", *LIVELY)
     for simulation in (plain, ruled):
         simulation.run(200)
@@ -80,7 +80,7 @@ def test_a_rule_that_repeats_the_terms_changes_nothing(file):
 
 
 def recording(file, name, left_out=()):
-    """A rule that also copies its record into its memory, from the fourth number on; and the columns that it copies."""
+    """A simulation whose rule also copies its record into memory, from the fourth number on, and the copied columns."""
     settings = (*QUICK, *DEATHLESS, *CHILDLESS, "genome.neutral_count=1", "genome.action.initial_mean=2")
     columns = rule_columns(make_simulation(*settings).config, "agent")
     columns = tuple(column for column in columns if column not in (*left_out, "neutral_1"))
@@ -115,8 +115,8 @@ MOVING = ("force_left", "force_right", "moved", "nearness")
 
 
 @pytest.mark.parametrize("left_out", [PLACED, MOVING])
-def test_the_record_has_what_its_columns_say(file, left_out):
-    """In two halves: a memory has no room for all."""
+def test_the_record_matches_the_names_of_its_columns(file, left_out):
+    """In two halves, since memory is too small for all columns."""
     simulation, columns = recording(file, "same", left_out)
     simulation.run(30)
     world = simulation.worlds[0]
@@ -167,7 +167,7 @@ def test_plain_python_pays_the_same(file, name):
 
 
 def test_threads_and_checkpoints_change_nothing(file):
-    """Two species, of which one has a rule with memory; the newborn begin with an empty one."""
+    """Two species, one of which has a rule with memory; newborns start with empty memory."""
     settings = (*LIVELY, "species.plain.body.radius=10", f'species.odd.reward.rule="{file}:curious"')
     settings = (*settings, "species.odd.reward.memory=3")
     once = make_simulation(*settings, seeds=(3,))
@@ -260,8 +260,8 @@ def test_a_config_is_pinned_once(file):
         ("from numpy.random import *\nPAY = 1.0", "line 1: it imports \\* from numpy.random"),
     ],
 )
-def test_what_no_run_keeps_is_refused(tmp_path, monkeypatch, text, message):
-    """A run keeps the text of the rule's file: what that takes from elsewhere could change unnoticed."""
+def test_sources_that_no_run_keeps_are_refused(tmp_path, monkeypatch, text, message):
+    """A run keeps the text of the rule's file; anything it takes from elsewhere could change unnoticed."""
     monkeypatch.syspath_prepend(tmp_path)
     (tmp_path / "helper.py").write_text("PAY = 1.0\n")
     rule = tmp_path / "rule.py"

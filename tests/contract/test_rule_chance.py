@@ -1,4 +1,4 @@
-"""Rules in Python for death and birth: against the formulas that they replace, and against the same in plain Python."""
+"""Python rules for death and birth, compared with the formulas they replace and with the same rules in plain Python."""
 
 from functools import partial
 
@@ -68,14 +68,14 @@ def file(tmp_path):
 
 
 def living(file, *settings, threads=1, seeds=(3,), preset="baseline", **chosen):
-    """A simulation with these rules, by use."""
+    """A simulation with the rule given for each use."""
     named = (f'{use}.rule="{file}:{name}"' for use, name in chosen.items())
     return make_simulation(*settings, *named, threads=threads, seeds=seeds, preset=preset)
 
 
 @pytest.mark.parametrize("settings", [SEASON, RELEASED, ("world.birth_order=after_deaths",)])
 def test_rules_that_repeat_the_formulas_change_nothing(file, settings):
-    """Births, deaths, learning: the same bits. A parent's hazard is asked again with the energy that is left."""
+    """Births, deaths and learning have the same bits. A parent's hazard is computed again with its remaining energy."""
     plain = make_simulation(*LIVELY, *settings, seeds=(3,))
     ruled = living(file, *LIVELY, *settings, hazard="same", birth="same")
     for simulation in (plain, ruled):
@@ -85,7 +85,7 @@ def test_rules_that_repeat_the_formulas_change_nothing(file, settings):
     assert plain.worlds[0].digest() == ruled.worlds[0].digest()
 
 
-def test_prey_that_ask_rules_are_eaten_as_before(file):
+def test_prey_with_rules_are_eaten_as_before(file):
     settings = (*QUICK, "species.prey.birth.kappa=0.01")
     plain = make_simulation(*settings, preset="predator", seeds=(3,))
     ruled = make_simulation(
@@ -100,7 +100,7 @@ def test_prey_that_ask_rules_are_eaten_as_before(file):
 
 
 def test_the_formulas_written_in_python_give_the_same_lives(file):
-    """Chances differ by the rounding of `exp`, 1e-16: a draw would have to fall between them."""
+    """Chances differ by the rounding of `exp`, 1e-16; to matter, a draw would have to fall between them."""
     plain, ruled = make_simulation(*LIVELY, seeds=(3,)), living(file, *LIVELY, hazard="hazard", birth="birth")
     for simulation in (plain, ruled):
         simulation.run(200)
@@ -114,7 +114,7 @@ def draws(seed, agent, step):
     return fine_uniform(*words[:2]), fine_uniform(*words[2:])
 
 
-def test_who_dies_is_who_drew_less_than_plain_python_answers(file):
+def test_agents_die_that_draw_less_than_plain_python_returns(file):
     simulation = living(file, *QUICK, *CHILDLESS, "reward.memory=2", reward="noting", hazard="swamp")
     world = simulation.worlds[0]
     swamp = next(rule for rule in rules(simulation.config) if rule.use == "hazard")
@@ -133,7 +133,7 @@ def test_who_dies_is_who_drew_less_than_plain_python_answers(file):
     assert died > 5
 
 
-def test_a_rule_of_births_knows_how_many_live(file):
+def test_a_birth_rule_knows_how_many_agents_are_alive(file):
     simulation = living(
         file, *QUICK, *DEATHLESS, "population.capacity=60", "population.initial_count=20", birth="crowded"
     )
@@ -169,21 +169,21 @@ def test_threads_and_checkpoints_change_nothing(file):
         ("raising", "rule_no_chance: .* step 1, value -?nan, agent 0"),
     ],
 )
-def test_what_is_no_chance_stops_the_world(file, use, name, says):
+def test_an_invalid_chance_stops_the_world(file, use, name, says):
     other = {"hazard": CHILDLESS, "birth": DEATHLESS}[use]
     simulation = living(file, *QUICK, *other, **{use: name})
     with pytest.raises(EngineError, match=rf"{says}.*, {use}\.rule of agent \(my_rules\.py:{name}\), windows"):
         simulation.run(10)
 
 
-def test_only_a_reward_writes_memories(file):
+def test_only_a_reward_rule_may_write_memory(file):
     simulation = living(file, *QUICK, "reward.memory=2", reward="noting", hazard="writing")
     where = r"agent 0, hazard\.rule of agent \(my_rules\.py:writing\), windows"
     with pytest.raises(EngineError, match=rf"rule_wrote: .* value 1, {where}"):
         simulation.run(10)
 
 
-def test_a_run_goes_on_with_the_rules_that_it_keeps(file, tmp_path):
+def test_a_run_is_resumed_with_the_rules_that_it_keeps(file, tmp_path):
     overrides = [*LIVELY, f'hazard.rule="{file}:hazard"', f'birth.rule="{file}:birth"']
     plan = RunPlan(load_config("baseline", overrides=overrides), seeds=(1,), steps=64, out=tmp_path / "run", threads=1)
     run(plan)

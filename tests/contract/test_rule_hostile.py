@@ -1,4 +1,4 @@
-"""Rules in Python that are wrong in some way: each is refused in one line, or stops its world."""
+"""Faulty Python rules: each is refused in one line or stops its world."""
 
 import os
 
@@ -106,14 +106,14 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("text", "says"), REFUSED.values(), ids=REFUSED)
-def test_what_cannot_be_a_rule_is_refused_in_one_line(tmp_path, text, says):
+def test_an_invalid_rule_is_refused_in_one_line(tmp_path, text, says):
     with pytest.raises(RuleError, match=says) as caught:
         make(tmp_path / "r.py", text)
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 400
 
 
-def test_a_file_that_is_none_is_refused(tmp_path):
+def test_an_unusable_file_is_refused(tmp_path):
     for path, says in (
         (tmp_path / "gone.py", "cannot read .*gone.py: No such file"),
         (tmp_path / "folder.py", "it is no plain file"),
@@ -130,7 +130,7 @@ def test_a_file_that_is_none_is_refused(tmp_path):
             make_simulation(*QUIET, f'reward.rule="{path}:rule"')
 
 
-def test_a_relative_file_that_is_not_there_says_where_it_was_looked_for(tmp_path, monkeypatch):
+def test_the_error_for_a_missing_relative_file_names_the_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RuleError, match=rf"cannot read {tmp_path}/my\.py: No such file"):
         make_simulation(*QUIET, 'reward.rule="my.py:rule"')
@@ -187,18 +187,18 @@ WORKS = {
 
 
 @pytest.mark.parametrize("text", WORKS.values(), ids=WORKS)
-def test_what_numba_can_compile_pays(tmp_path, text):
+def test_rules_that_numba_can_compile_pay(tmp_path, text):
     """Each pays an agent its age."""
     simulation = make(tmp_path / "r.py", text)
     simulation.run(4)
     assert set(simulation.worlds[0].agents()["reward"]) == {1.0 + 2.0 + 3.0 + 4.0}
 
 
-def test_a_rule_that_allocates_gives_its_memory_back(tmp_path):
+def test_a_rule_that_allocates_frees_its_memory(tmp_path):
     import resource
 
     simulation = make(tmp_path / "r.py", WORKS["allocates"].replace("1000", "100000"))
     simulation.run(20)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     simulation.run(200)
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 50_000  # of 800 MB [KiB]
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 50_000  # of 800 MB allocated in total [KiB]

@@ -1,4 +1,4 @@
-"""Queries about neighbors as rules read them, against a count of all pairs; and genes that only rules read."""
+"""Neighbor queries as rules read them, compared with a count over all pairs, and genes that only rules read."""
 
 import math
 
@@ -25,7 +25,7 @@ PLENTY = ("food.normal.capacity=200", "food.normal.initial_count=200", "food.nor
 
 @pytest.fixture
 def file(tmp_path):
-    """Rules that copy their queries into their memory."""
+    """Rules that read their queries; `copy` copies them into its memory."""
     copied = "".join(f"    agent.memory_{i} = agent.near_{name}\n" for i, name in enumerate(NUMBERS, 1))
     (tmp_path / "near.py").write_text(
         f"def copy(agent):\n{copied}    return agent.linear\n\n"
@@ -42,7 +42,7 @@ def wrapped(angle):
 
 
 def distances(world, of=None):
-    """From every agent (row) to every other one of some species, infinite to the rest."""
+    """Distances from every agent (row) to every other agent of some species, infinite for the rest."""
     agents = world.agents()
     x, y = (world.view(f"physics.bodies.{name}")[world.living].astype(float) for name in ("x", "y"))
     apart = np.hypot(x - x[:, None], y - y[:, None])
@@ -57,7 +57,7 @@ def near(world, reach, of=None):
 
 
 def found(world, reach, of=None):
-    """The numbers of every agent as a step begins, by all pairs."""
+    """The query results of every agent at the start of a step, from all pairs."""
     agents = world.agents()
     x, y, angle = (world.view(f"physics.bodies.{name}")[world.living].astype(float) for name in ("x", "y", "angle"))
     rows = []
@@ -76,8 +76,8 @@ def found(world, reach, of=None):
 
 
 @pytest.mark.parametrize(("of", "reach"), [(["*"], 40.0), (["odd"], 120.0), (["plain"], 1e4)])
-def test_a_query_finds_who_is_near(file, of, reach):
-    """Nobody is born or dies in the step that is compared, so meals are those of the agents that were there."""
+def test_a_query_finds_the_agents_nearby(file, of, reach):
+    """Only steps without births and deaths are compared, so the agents present had all the meals."""
     settings = (*LIVELY, *ARENA, *PLENTY, "species.plain.body.radius=8", f'species.odd.reward.rule="{file}:copy"')
     names = ", ".join(f'"{name}"' for name in of)
     settings += ("species.odd.reward.memory=5", f"species.odd.neighbor.near={{of=[{names}], range={reach}}}")
@@ -117,7 +117,7 @@ def test_bearings_are_counter_clockwise_from_the_heading(file):
 
 
 def test_threads_and_checkpoints_change_nothing(file):
-    """Also not that a world goes on in another simulation, whose slots nobody has lived in."""
+    """Nor does continuing a world in another simulation, whose slots were never used."""
     settings = (*LIVELY, *ARENA, *PLENTY, f'reward.rule="{file}:kind"', f'hazard.rule="{file}:crowd"')
     settings += ("genome.extra.kindness.initial_sd=1", 'birth.mating="pairs"', "birth.mating_range=50")
     settings += ("neighbor.near.range=50", "birth.distance_sd=20", "birth.attempts=100")
@@ -153,13 +153,13 @@ def test_a_gene_for_rules_is_drawn_inherited_and_paid(file):
     assert np.abs(agents["genome"][born][:, 3]).max() > 0.6
 
 
-def test_a_neutral_marker_is_refused_with_what_to_use(file):
+def test_a_neutral_gene_is_refused_with_an_alternative(file):
     with pytest.raises(RuleError, match=r"reads neutral_1.*genome\.extra\.NAME gives the species a gene extra_NAME"):
         make_simulation(f'reward.rule="{file}:marked"')
 
 
-def test_a_newborn_has_eaten_nothing_of_what_the_last_one_in_its_slot_ate(file):
-    """A parent's hazard is asked again when its child is there; in another simulation nobody has lived in the slot."""
+def test_a_newborn_does_not_count_the_meals_of_the_last_agent_in_its_slot(file):
+    """A parent's hazard is computed again after the birth; in another simulation, the child's slot was never used."""
     settings = (*LIVELY, *ARENA, *PLENTY, f'hazard.rule="{file}:greed"', "neighbor.near.range=35")
     settings += ("birth.distance_sd=20", "birth.attempts=1000", "birth.kappa=0.2")
     once = make_simulation(*settings, seeds=(3,))
@@ -175,7 +175,7 @@ def test_a_newborn_has_eaten_nothing_of_what_the_last_one_in_its_slot_ate(file):
     assert min(once.worlds[0].counters[name] for name in ("births", "deaths")) > 30
 
 
-def test_a_query_of_all_species_is_taken_from_one_of_them():
+def test_a_query_of_all_species_can_be_removed_from_one_of_them():
     settings = ("neighbor.close={}", "species.a.reward.pay.close_kin={}", "species.b.neighbor.close=false")
     config = load_config("baseline", overrides=settings)
     assert [list(species.neighbor) for species in config.species.values()] == [["close"], []]

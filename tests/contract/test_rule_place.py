@@ -1,4 +1,4 @@
-"""Where a rule's file is, and that a run goes on with the text it keeps: moved, from any folder, without the file."""
+"""How a rule's file is found, and that a run continues with the text it keeps: moved, elsewhere, without the file."""
 
 import json
 import shutil
@@ -27,7 +27,7 @@ LIVELY = (*QUICK, "population.capacity=12", "population.initial_count=8", "birth
 
 @pytest.fixture
 def study(tmp_path, monkeypatch):
-    """A folder with a config and its rules in a folder below, seen from another folder."""
+    """A folder with a config and its rules in a subfolder, while the current folder is another one."""
     folder = tmp_path / "study"
     (folder / "rules").mkdir(parents=True)
     (folder / "rules" / "own.py").write_text(TEXT)
@@ -54,7 +54,7 @@ def test_a_file_of_settings_names_rules_relative_to_itself(study, monkeypatch):
     assert len(Simulation(near, [1], 1).rules) == 2
 
 
-def test_what_is_typed_is_relative_to_the_current_folder(study, monkeypatch):
+def test_an_override_is_relative_to_the_current_folder(study, monkeypatch):
     monkeypatch.chdir(study / "rules")
     config = load_config(study / "my.toml", overrides=['reward.rule="own.py:pay"', 'hazard.rule="own.py:die"'])
     own = config.species["agent"]
@@ -71,14 +71,14 @@ def test_a_config_with_rules_is_read_back_from_anywhere(study):
         assert load_config(file) == parse_config(text, "text") == config
 
 
-def test_a_run_is_the_same_wherever_its_rule_lay(study, tmp_path):
+def test_a_run_is_the_same_wherever_its_rule_is(study, tmp_path):
     shutil.copytree(study, tmp_path / "copy")
     one, other = (plan(folder, "run").config for folder in (study, tmp_path / "copy"))
     assert digest(one) == digest(other)
     assert str(tmp_path) not in dump_toml(one)
 
 
-def test_a_moved_run_goes_on_without_the_file(study, tmp_path, monkeypatch):
+def test_a_moved_run_continues_without_the_file(study, tmp_path, monkeypatch):
     whole = run(plan(study, "whole", 160))
     run(plan(study, "run"))
     source = open_run(study / "run").manifest.rules[0]
@@ -101,12 +101,12 @@ def test_a_moved_run_goes_on_without_the_file(study, tmp_path, monkeypatch):
     assert resume(tmp_path / "branch", 220, 1).world_digests == resume(moved, 220, 1).world_digests
 
 
-def test_a_file_that_changed_is_named_and_its_new_text_not_used(study):
+def test_a_changed_file_is_named_and_its_new_text_is_not_used(study):
     whole = run(plan(study, "whole", 160))
     run(plan(study, "run"))
     (study / "rules" / "own.py").write_text(OTHER)
     with lock(study / "run", 160) as found:
-        (note,) = (note for note in found.notes if "own.py" in note)  # of both rules
+        (note,) = (note for note in found.notes if "own.py" in note)  # one for both rules
     assert note.startswith(f"{study}/rules/own.py has changed since: continuing with the text that the manifest keeps")
     assert resume(study / "run", 160, 1).world_digests == whole.world_digests
     new = ['reward.rule="%s:pay"' % (study / "rules" / "own.py")]
@@ -125,7 +125,7 @@ def test_a_text_in_the_manifest_that_changed_is_refused(study):
         resume(study / "run", 160)
 
 
-def test_a_fault_is_computed_again_with_the_text_that_is_kept(study, monkeypatch):
+def test_a_fault_is_replayed_with_the_text_that_the_run_keeps(study, monkeypatch):
     (study / "rules" / "own.py").write_text(TEXT.replace("+ 0.5", "/ (agent.age - 20.0) / (agent.age - 20.0) * 0.0"))
     failing = plan(study, "run")
     with pytest.raises(Exception, match="rule_not_finite"):
@@ -136,8 +136,8 @@ def test_a_fault_is_computed_again_with_the_text_that_is_kept(study, monkeypatch
     assert again.recurred == again.recorded
 
 
-def test_the_config_of_a_run_begins_another_one(study):
-    """By the command line, which finds the texts beside it; a program gives them."""
+def test_the_config_of_a_run_can_start_another_one(study):
+    """The command line finds the texts next to it; a program passes them."""
     first = run(plan(study, "run"))
     shutil.rmtree(study / "rules")
     config = load_config(study / "run" / "config.toml")

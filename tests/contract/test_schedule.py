@@ -1,4 +1,4 @@
-"""What follows time: growth, capacity and hazard, and where food appears."""
+"""What depends on time: growth, capacity and hazard, and where food appears."""
 
 import math
 
@@ -15,7 +15,7 @@ ALONE = (*QUICK, *STILL, *DEATHLESS, *CHILDLESS, "population.initial_count=1")
 
 
 def supply(steps: int, *settings: str) -> np.ndarray:
-    """The internal number of foods after each step of a world where nobody eats."""
+    """The internal number of foods after each step of a world in which no agent eats."""
     simulation = make_simulation(*ALONE, "food.normal.initial_count=0", "sensor.mouth_spread=1e-3", *settings)
     numbers = []
     for _ in range(steps):
@@ -129,6 +129,6 @@ def test_foods_keep_their_distance():
         ("food.normal.placement={form='mixture', centers=[[9.0, 9.0]], sd=[1.0, 1.0]}", "at least two centers"),
     ],
 )
-def test_what_makes_no_sense_is_refused(setting, message):
+def test_meaningless_settings_are_refused(setting, message):
     with pytest.raises(ConfigError, match=message):
         load_config("baseline", overrides=[setting])

@@ -1,4 +1,4 @@
-"""Moments and observations in files of HEDON_SCRATCH: no result changes, and what goes wrong is one sentence."""
+"""Moments and observations in files under HEDON_SCRATCH: no result changes, and each error is one sentence."""
 
 import os
 import subprocess
@@ -18,10 +18,10 @@ from hedon.experiment.simulation import SCRATCH_VARIABLE
 
 
 def kept_files(folder: Path) -> list[str]:
-    """The files of this folder that have no name and that this process holds."""
+    """The unnamed files in this folder that this process holds open."""
     found = []
     for number in os.listdir("/proc/self/fd"):
-        with suppress(FileNotFoundError):  # that of the listing itself
+        with suppress(FileNotFoundError):  # the descriptor of the listing itself
             found.append(os.readlink(f"/proc/self/fd/{number}"))
     return [name for name in found if name.startswith(str(folder)) and name.endswith("(deleted)")]
 
@@ -34,7 +34,7 @@ def test_files_change_no_result(threads: int, tmp_path: Path, monkeypatch: pytes
     other = make_simulation(*settings, threads=threads)
     assert len(kept_files(tmp_path)) == len(other.worlds)
     assert not list(tmp_path.iterdir())
-    for _ in range(3):  # in the second and third, observations come where others were
+    for _ in range(3):  # in the second and third rounds, observations replace earlier ones
         plain.run(WINDOW + 7)
         other.run(WINDOW + 7)
         assert [world.digest() for world in plain.worlds] == [world.digest() for world in other.worlds]
@@ -46,7 +46,7 @@ def test_files_change_no_result(threads: int, tmp_path: Path, monkeypatch: pytes
     assert not kept_files(tmp_path)
 
 
-def test_a_run_with_files_is_the_run_without(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_with_files_equals_a_run_without(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     small_run(tmp_path / "plain", 5 * WINDOW)
     monkeypatch.setenv(SCRATCH_VARIABLE, str(tmp_path))
     small_run(tmp_path / "other", 2 * WINDOW + 9)
@@ -54,7 +54,7 @@ def test_a_run_with_files_is_the_run_without(tmp_path: Path, monkeypatch: pytest
     assert_same_run(tmp_path / "plain", tmp_path / "other")
 
 
-def test_memory_is_needed_for_what_is_not_in_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_memory_is_needed_only_for_what_is_not_in_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(SCRATCH_VARIABLE, raising=False)
     config = make_simulation().config
     need = memory_needed(config, 1, 1)
@@ -71,7 +71,7 @@ def test_memory_is_needed_for_what_is_not_in_files(tmp_path: Path, monkeypatch: 
 
 
 @pytest.mark.parametrize("place", ["missing", "a file"])
-def test_a_folder_that_is_none_is_refused(place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_invalid_folder_is_refused(place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / place
     if place == "a file":
         folder.write_text("")

@@ -1,4 +1,4 @@
-"""Genes that set numbers of a species: an agent with a gene is as one of a species that has the number itself."""
+"""Genes that set numbers of a species: an agent with a gene is like one whose species has the number itself."""
 
 import math
 from dataclasses import replace
@@ -81,7 +81,7 @@ def with_gene(path: str, gene: float, *more: str) -> Simulation:
 
 
 def motion(simulation: Simulation) -> list[np.ndarray]:
-    """What the living did and are, but their genomes."""
+    """The past and present of the living agents, except their genomes."""
     world = simulation.worlds[0]
     agents = world.agents()
     names = ("agent_id", "x", "y", "angle", "energy", "water", "reward", "parent_id", "children", "distance")
@@ -102,7 +102,7 @@ def plain() -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("path", PATHS)
-def test_a_gene_makes_of_a_number_what_the_setting_would(path, plain):
+def test_a_gene_changes_a_number_as_the_setting_would(path, plain):
     gene = float(np.float32({"energy.motor_threshold": -0.15, "sensor.mouth_spread": -0.4}.get(path, 0.12)))
     first = with_gene(path, gene)
     value = expressed(load_config("baseline", overrides=WORLD).species["own"], path, gene)
@@ -145,7 +145,7 @@ def test_threads_slots_and_checkpoints_change_nothing():
     "settings", [(), ('world.inheritance="at_window_end"', "birth.network=none", "birth.mating=none")]
 )
 def test_slots_that_were_used_before_change_nothing(settings):
-    """A newborn has nothing of who was in its slot before, but what late inheritance leaves it."""
+    """A newborn keeps nothing of the previous agent in its slot, except what late inheritance leaves it."""
     from hedon import _engine
     from hedon.config.engine import engine_input
 
@@ -176,7 +176,7 @@ def test_founders_of_a_table_have_room_for_their_bodies():
 
 
 def test_genes_beyond_the_limits_of_a_branch_count_as_the_limits():
-    """A branch may lower a limit: its world begins with genes that are beyond it."""
+    """A branch may lower a limit, so its world may start with genes beyond it."""
     wide = with_gene("body.radius", 0.3)
     wide.run(10)
     state = wide.engine.save(0)
@@ -186,7 +186,7 @@ def test_genes_beyond_the_limits_of_a_branch_count_as_the_limits():
     assert narrow.worlds[0].agents()["genome"].max() <= wide.worlds[0].agents()["genome"].max()
 
 
-def test_a_checkpoint_with_wild_genes_is_refused():
+def test_a_checkpoint_with_invalid_genes_is_refused():
     simulation = with_gene("body.radius", 0.1)
     state = dict(simulation.engine.save(0))
     state["genome"] = np.full_like(state["genome"], np.nan)
@@ -194,7 +194,7 @@ def test_a_checkpoint_with_wild_genes_is_refused():
         simulation.engine.restore(0, state)
 
 
-def test_forecasts_are_of_founders_with_mean_genes():
+def test_forecasts_assume_founders_with_mean_genes():
     gene = "genome.set.energy.basic_cost={initial_mean=0.5}"
     own = load_config("baseline", overrides=[gene])
     cost = load_config("baseline").species["agent"].energy.basic_cost
@@ -270,7 +270,7 @@ def test_quotes_and_nested_tables_name_the_same_gene():
     )
 
 
-def test_an_engine_does_not_take_bodies_that_have_no_room():
+def test_the_engine_refuses_bodies_that_do_not_fit():
     from hedon import _engine
     from hedon.config.engine import engine_input
 

@@ -1,4 +1,4 @@
-"""Rewards for what rays see, against the observation that they are paid for."""
+"""Rewards for what rays see, compared with the observation that they pay for."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from worlds import CHILDLESS, DEATHLESS, QUICK, STILL, make_simulation, set_scen
 
 
 def rewards(channel: str, weight: float) -> tuple[float, np.ndarray]:
-    """What a prey is paid in a step in which it looks at a predator, and its readings of the predator."""
+    """The reward of a prey agent for a step in which it sees a predator, and its readings of the predator."""
     simulation = make_simulation(
         *QUICK,
         *STILL,

@@ -1,4 +1,4 @@
-"""Smell, against the sum over all sources in double precision."""
+"""Smell, compared with the sum over all sources in double precision."""
 
 import math
 
@@ -14,14 +14,14 @@ TWO = 'sensor.smells=["agent", "normal"]'
 
 
 def smelled(world, species: int = 0) -> np.ndarray:
-    """What each of the living smells, by the names of the entries."""
+    """The entries of each living agent's observation that hold smells."""
     columns = observation_columns(world.config, list(world.config.species)[species])
     at = [i for i, name in enumerate(columns) if name.startswith("smell_")]
     return world.observations(species)[:, at]
 
 
 def direct(world, decay: float, angles: tuple[float, ...]) -> np.ndarray:
-    """The same by sums over all agents, then all foods, with noses at these angles [degree]: (alive, sources·noses)."""
+    """The same as sums over all agents, then all foods, with noses at these angles [degree]: (alive, sources·noses)."""
     lives, foods = world.agents(), world.foods()
     places = np.stack([lives["x"], lives["y"]], axis=1).astype(float)
     sources = [places, np.stack([foods["x"], foods["y"]], axis=1).astype(float)]
@@ -47,7 +47,7 @@ def test_smell_is_the_sum_over_all_sources(decay, noses, angles):
     world = simulation.worlds[0]
     ours, exact = smelled(world), direct(world, decay, angles)
     assert ours.shape == exact.shape == (world.alive, 2 * noses)
-    assert np.abs(ours - exact).max() < 1.1e-4  # the error that the cut-off may make, and rounding
+    assert np.abs(ours - exact).max() < 1.1e-4  # the largest error of the cutoff, plus rounding
     assert np.ptp(exact[:, 0]) > 0.1
 
 
@@ -59,7 +59,7 @@ def test_one_source_by_hand_and_no_smell_of_oneself():
 
 def test_two_noses_tell_left_from_right():
     simulation = make_simulation(*PLAIN, 'sensor.smells=["normal"]', "sensor.noses=2", "sensor.nose_angle=90")
-    set_scene(simulation, [(100, 100, 0.0)], [(130, 100)])  # it looks along +y, the food lies to its right
+    set_scene(simulation, [(100, 100, 0.0)], [(130, 100)])  # it faces +y, and the food is on its right
     right, left = smelled(simulation.worlds[0])[0]
     assert (right, left) == pytest.approx((math.exp(-2), math.exp(-4)), rel=1e-5)
 
@@ -83,8 +83,8 @@ def test_a_reward_for_smell_is_the_weight_times_the_mean_over_noses():
     assert expected > 0.03
 
 
-def test_what_agents_learn_from_holds_what_they_smelled():
-    """A wide observation: eight entries of smell in a world that learns, the same on two threads."""
+def test_agents_learn_from_what_they_smelled():
+    """A wide observation: six entries of smell in a world that learns, with the same bits on two threads."""
     settings = (*QUICK, "sensor.noses=2", 'sensor.smells=["*"]')
     worlds = []
     for threads in (1, 2):

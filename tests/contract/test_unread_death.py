@@ -1,4 +1,4 @@
-"""Lives that nobody reads: worlds go on for ever, and who asks late is told what is lost."""
+"""Deaths that are never read: worlds run on, and a late reader learns how many are lost."""
 
 import numpy as np
 import pytest
@@ -22,17 +22,17 @@ BRIEF = (
     "hazard.beta_age=0",
     "sensor.ray_count=4",
 )
-"""Lives of some fifty steps in a handful of slots."""
+"""Lives of about fifty steps in a few slots."""
 CONFIG = load_config("baseline", overrides=BRIEF)
 LONG = 1000 * 16
-"""Steps in which far more die than the engine has room for."""
+"""Steps in which far more agents die than the engine has room for."""
 
 
 def make(kernel: str = "") -> Simulation:
     return Simulation(CONFIG, [1], 1, kernel)
 
 
-def test_a_loop_that_reads_no_deaths_never_ends_and_grows_no_memory():
+def test_a_loop_that_never_reads_deaths_runs_on_without_growing_memory():
     read, unread = make(), make()
     rows: list[np.ndarray] = []
     for _ in range(LONG // 64):
@@ -51,7 +51,7 @@ def test_a_loop_that_reads_no_deaths_never_ends_and_grows_no_memory():
         world.deaths()
     assert world.lost_deaths == len(ids) - ROOM  # nothing was taken
     late = world.deaths(partial=True)
-    np.testing.assert_array_equal(late["agent_id"], ids[-ROOM:])  # the newest, the oldest of them first
+    np.testing.assert_array_equal(late["agent_id"], ids[-ROOM:])  # the newest, oldest first
     assert (np.diff(late["death_step"]) >= 0).all()
     assert all(len(column) == ROOM for column in late.values())
     assert (world.lost_deaths, world.waiting_deaths) == (0, 0.0)
@@ -61,7 +61,7 @@ def test_a_loop_that_reads_no_deaths_never_ends_and_grows_no_memory():
 
 
 def test_the_last_row_is_not_lost():
-    """Up to the room for them, deaths are all there; one more replaces the first."""
+    """All deaths are kept until the room is full; one more replaces the first."""
     simulation = make()
     world = simulation.worlds[0]
     while world.counters["deaths"] < ROOM:
@@ -76,7 +76,7 @@ def test_the_last_row_is_not_lost():
     assert world.deaths(partial=True)["agent_id"][0] != first[0]
 
 
-def test_a_checkpoint_holds_nothing_of_what_was_lost():
+def test_lost_deaths_do_not_affect_a_checkpoint():
     read, unread = make(), make()
     for _ in range(200):
         read.run(16)
@@ -103,7 +103,7 @@ def test_driven_worlds_never_end():
         assert len(world.deaths(partial=True)["agent_id"]) == ROOM
 
 
-def test_a_world_of_pettingzoo_never_ends():
+def test_a_pettingzoo_world_never_ends():
     pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
     from hedon.env import ParallelEnv
 
@@ -118,7 +118,7 @@ def test_a_world_of_pettingzoo_never_ends():
 
 
 @pytest.mark.more
-def test_a_device_keeps_the_same(emulated: str):
+def test_a_device_keeps_the_same_deaths(emulated: str):
     processor, device = make("avx2"), make(emulated)
     for simulation in (processor, device):
         simulation.run(64 * 40)

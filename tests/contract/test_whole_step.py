@@ -1,4 +1,4 @@
-"""Every recorded step is whole: no part of a table ends within one, and readers join those of older runs."""
+"""Every recorded step is whole: no part of a table ends within a step, and readers join the split steps of old runs."""
 
 from collections import Counter
 from functools import partial
@@ -30,7 +30,7 @@ def test_a_part_never_ends_within_a_step(species_run, table):
 
 
 def shown(folder, world):
-    """What a video shows at each recorded step: how many of each kind, and the ids."""
+    """What a video shows at each recorded step: the number of each kind, and the ids."""
     footage = open_footage(folder, open_run(folder).manifest.seeds[world])
     found = {}
     for step in STEPS:

@@ -1,7 +1,7 @@
-"""What is done otherwise on Windows, with its calls played by this system's: no Python of Windows is needed.
+"""What is different on Windows, with its calls emulated on this system, so that no Python for Windows is needed.
 
-The script below is a process that takes `hedon.record.lock` for Windows's: `msvcrt` locks bytes of a file, as `fcntl`
-does, and a folder cannot be opened.
+The script below makes `hedon.record.lock` behave as on Windows: `msvcrt` locks bytes of a file, by means of `fcntl`,
+and a folder cannot be opened.
 """
 
 import json
@@ -56,7 +56,7 @@ def release(process: subprocess.Popen[str]) -> None:
     assert process.returncode == 0
 
 
-def test_a_second_process_is_refused_and_told_who_has_the_folder(tmp_path: Path):
+def test_a_second_process_is_refused_and_learns_who_has_the_folder(tmp_path: Path):
     holder = begin(HOLD, tmp_path)
     owner = first_line(holder)
     second = begin(TRY, tmp_path)
@@ -81,7 +81,7 @@ def test_a_second_writer_waits_and_leaves_no_file(tmp_path: Path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_file_that_is_read_is_replaced_when_its_reader_has_closed_it(tmp_path: Path, monkeypatch):
+def test_an_open_file_is_replaced_once_its_reader_has_closed_it(tmp_path: Path, monkeypatch):
     path, refused = tmp_path / "file", []
     path.write_text("old")
 
