@@ -1,4 +1,4 @@
-"""Bodies of several sizes: closed forms for two unequal discs, and what all scenes must keep."""
+"""Bodies of several sizes: closed forms for two unequal discs, and invariants of all scenes."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ SOLVERS = ("sequential", "jacobi")
 
 
 def pair(gap, **settings):
-    """A small body and, at its right, a large one, `gap` apart."""
+    """A small body and, on its right, a large one, `gap` apart."""
     between = RADIUS + LARGE + gap
     return make_scene([[100.0, 100.0], [100.0 + between, 100.0]], classes=CLASSES, substeps=1, **FREE, **settings)
 
@@ -66,7 +66,7 @@ def test_a_crowd_keeps_its_momentum(solver):
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_classes_of_one_size_move_as_one_class(solver):
-    """The general contact against the one for equal bodies: the same motion, up to rounding."""
+    """The general contact compared with the one for equal bodies: the same motion, up to rounding."""
     rng = np.random.default_rng(5)
     lattice = np.stack(np.meshgrid(np.arange(4), np.arange(3)), -1).reshape(-1, 2)
     places, velocity = 150.0 + 19.7 * lattice, rng.uniform(-2, 2, lattice.shape)

@@ -1,4 +1,4 @@
-"""Contacts of few bodies against closed forms, and what the visitor hears of them."""
+"""Contacts of a few bodies compared with closed forms, and the calls of the contact visitor."""
 
 import math
 
@@ -77,7 +77,7 @@ def test_sliding_contact_feels_coulomb_friction():
 
 
 def test_slow_slide_ends_rolling():
-    """Friction that suffices stops the slip: a disc then keeps 2/3 of its speed and turns at v/r."""
+    """Sufficient friction stops the slip: a disc then keeps 2/3 of its speed and turns at v/r."""
     scene = make_scene([[100.0, 109.99]], walls=WALL, substeps=1, linear_damping=0.0, angular_damping=0.0)
     scene.array("velocity_x")[0], scene.array("velocity_y")[0] = 0.3, -0.9
     scene.step()
@@ -97,7 +97,7 @@ def test_friction_turns_both_bodies_of_a_pair_the_same_way():
     np.testing.assert_allclose(abs(spin[0]), impulse * MASS * RADIUS / INERTIA, rtol=2e-3)
 
 
-def test_food_stops_a_body_that_pushes_on():
+def test_food_stops_a_body_that_keeps_pushing():
     scene = make_scene([[100.0, 100.0]], circles=[[130.0, 100.0]])
     scene.array("force_x")[0] = 160.0
     scene.step(200)
@@ -121,7 +121,7 @@ def test_a_pair_that_separates_loses_its_impulse():
     assert scene.pairs("body")[0][2:4] == (0.0, 0.0)
 
 
-def test_deep_overlap_is_corrected_by_the_clamped_rate():
+def test_deep_overlap_is_corrected_at_the_clamped_rate():
     scene = make_scene([[100.0, 100.0], [115.0, 100.0]], substeps=1, position_passes=1)
     scene.step()
     np.testing.assert_allclose(scene.array("x"), [99.9, 115.1], atol=1e-5)
@@ -130,7 +130,7 @@ def test_deep_overlap_is_corrected_by_the_clamped_rate():
     np.testing.assert_allclose(np.ptp(scene.array("x")), 19.9 + 0.2 * (0.1 - 0.005), atol=2e-5)
 
 
-def test_visitor_hears_of_both_sides_and_all_substeps():
+def test_visitor_is_called_for_both_sides_and_all_substeps():
     scene = make_scene([[100.0, 100.0], [119.0, 100.0]], circles=[[100.0, 113.0]], walls=[[91.0, 0.0, 91.0, 300.0]])
     scene.array("angle")[:] = [0.5, 1.5]
     scene.array("angular_velocity")[0] = 0.1

@@ -1,4 +1,4 @@
-"""Bodies that touch nothing: closed forms, caps, and the readings of the released code."""
+"""Bodies that touch nothing: closed forms, caps, and motions recorded from the paper's program."""
 
 import json
 import math
@@ -82,7 +82,7 @@ def test_angle_stays_within_one_turn(turn):
     np.testing.assert_allclose(np.exp(1j * np.array(angles)), np.exp(1j * want), atol=1e-4)
 
 
-def test_a_body_that_is_not_in_the_order_rests():
+def test_a_body_that_is_not_in_the_order_does_not_move():
     scene = make_scene([[100.0, 100.0], [300.0, 100.0]])
     scene.set_order([1])
     scene.array("velocity_x")[:] = 1.0

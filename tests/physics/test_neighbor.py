@@ -1,4 +1,4 @@
-"""The neighbor list misses nothing, and neither it, nor slots, nor threads change a bit."""
+"""The neighbor list misses nothing, and neither the list nor slots nor threads change a bit."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ BODIES = 120
 
 
 def run(steps=120, threads=1, slots=None, rebuild_every=0, seed=1, **settings):
-    """Bits of a driven crowd after some steps, in canonical order, and its counters."""
+    """State bits and contacts of a driven crowd after some steps, in canonical order, and its counters."""
     scene = crowd(seed, BODIES, 60, slots, **settings)
     slots = np.arange(BODIES) if slots is None else slots
     for step in random_drive(scene, steps, seed + 1, slots):
@@ -49,14 +49,14 @@ def reference(solver):
     ],
     ids=str,
 )
-def test_what_must_not_matter_changes_no_bit(reference, solver, change):
+def test_irrelevant_settings_change_no_bit(reference, solver, change):
     state, contacts, _ = run(**change, solver=solver)
     np.testing.assert_array_equal(state, reference[0])
     assert contacts == reference[1]
 
 
 def test_the_order_does_matter(reference, solver):
-    """Else the test of permuted slots would prove nothing: the order decides who is solved or added first."""
+    """Otherwise, the test of permuted slots would prove nothing: the order decides what is solved or added first."""
     scene = crowd(1, BODIES, 60, solver=solver)
     scene.set_order(list(range(BODIES))[::-1])
     for _ in random_drive(scene, 120, 2, np.arange(BODIES)):
@@ -64,12 +64,12 @@ def test_the_order_does_matter(reference, solver):
     assert (read(scene).view(np.int32) != reference[0]).any()
 
 
-def test_the_list_is_used_again_while_it_lasts(reference):
+def test_the_list_is_reused_while_it_is_valid(reference):
     assert 10 < reference[2]["builds"] < 80
 
 
 def test_list_holds_every_overlap_of_a_crowd():
-    """Against all pairs in float64, in each of 500 steps of 200 bodies."""
+    """Compared with all pairs in float64, in each of 500 steps of 200 bodies."""
     scene = crowd(11, 200, 60)
     circles = np.column_stack([scene.array("circle_x"), scene.array("circle_y")]).astype(float)
     walls = arena_walls().astype(np.float32).astype(float)
@@ -109,8 +109,8 @@ def test_walls_in_the_arena_are_found_along_their_whole_length(wall):
     assert set(np.flatnonzero(distance < RADIUS + 3.99)) <= listed <= set(np.flatnonzero(distance < RADIUS + 4.01))
 
 
-def test_a_body_that_outruns_the_skin_makes_the_step_run_again():
-    """A fast body is pushed into a resting one: found, however narrow the skin, with the same bits."""
+def test_a_body_that_outruns_the_skin_repeats_the_step():
+    """A fast body hits a resting one: the contact is found with the same bits, however narrow the skin."""
 
     def collide(skin):
         scene = make_scene([[100.0, 100.0], [126.0, 100.0], [160.0, 104.0]], neighbor_skin=skin, linear_damping=0.0)
@@ -127,9 +127,9 @@ def test_a_body_that_outruns_the_skin_makes_the_step_run_again():
     assert narrow[3, 2] > 0.5  # the third was hit through the second
 
 
-def test_a_body_that_a_jam_throws_far_fills_no_list():
-    """Under the solver jacobi pushes add up, and a body may fly so far in a substep that nearly all pairs of a full
-    arena get listed. The default solver has no room for these, and needs none."""
+def test_a_body_thrown_far_by_a_jam_fills_no_list():
+    """With the Jacobi solver, pushes add up, and a body may fly so far in a substep that nearly all pairs of a full
+    arena are listed. The default solver has no room for these and needs none."""
 
     def throw(solver):
         lattice = np.stack(np.meshgrid(np.arange(14.0), np.arange(14.0)), -1).reshape(-1, 2)
@@ -157,7 +157,7 @@ def test_a_body_may_cross_the_arena_in_a_step(solver):
     assert scene.counters()["repeats"] > 8
 
 
-def test_a_full_list_is_a_fault_and_leaves_the_bodies():
+def test_a_full_list_is_a_fault_and_leaves_the_bodies_unchanged():
     scene = crowd(1, BODIES, 0, pair_limit=20)
     before = read(scene)
     with pytest.raises(RuntimeError, match="neighbor_overflow"):
@@ -185,7 +185,7 @@ def test_newcomers_are_seen_by_queries_at_once_and_act_in_the_next_step():
 
 
 def test_circles_may_come_and_go_in_one_slot():
-    """Eaten and grown again between two steps, here or elsewhere: each query sees what is there."""
+    """Eaten and regrown between two steps, in the same place or elsewhere: each query sees what is there."""
     scene = make_scene([[400.0, 300.0]], circles=[[100.0, 100.0], [102.0, 109.0], [109.0, 102.0]])
     scene.step()
     scene.add_circle(1, 101.0, 110.0)
@@ -215,7 +215,7 @@ def test_queries_give_all_items_within_reach_once():
         assert set(within) <= set(near)
 
 
-def test_an_empty_order_is_a_step_of_nothing():
+def test_a_step_with_an_empty_order_does_nothing():
     scene = make_scene([[100.0, 100.0]], circles=[[300.0, 300.0]], walls=arena_walls())
     scene.step()
     scene.set_order([])
@@ -225,7 +225,7 @@ def test_an_empty_order_is_a_step_of_nothing():
 
 
 def test_impulses_survive_a_change_of_the_order():
-    """A death far away leaves a resting stack as it was, a turned order nearly so."""
+    """A death far away leaves a resting stack unchanged, and a reversed order nearly so."""
 
     def stack(order):
         places = [[300.0, 300.0], [100.0, 109.9], [100.0, 129.8]]
@@ -242,7 +242,7 @@ def test_impulses_survive_a_change_of_the_order():
     assert carried > 5.0
     np.testing.assert_array_equal(stack([1, 2])[1], unchanged)
     np.testing.assert_allclose(stack([2, 1])[1], unchanged, atol=1e-5)
-    # Without warm start the stack would stay at rest; with it, the old impulses push it first.
+    # Without a warm start, the stack would stay at rest; with it, the old impulses push it first.
     cold = make_scene(unchanged[:2].T, walls=[[0.0, 100.0, 200.0, 100.0]], substeps=1)
     cold.step()
     assert np.abs(cold.array("velocity_y")).max() < 1e-6 < np.abs(unchanged[4]).max()

@@ -1,6 +1,6 @@
-"""What passes as a config is lived in: the engine refuses nothing that `load_config` accepts.
+"""Every valid config can be simulated: the engine refuses nothing that `load_config` accepts.
 
-HEDON_FUZZ=N tries N examples instead of the few of the suite.
+HEDON_FUZZ=N tries N examples instead of the default number.
 """
 
 import os
@@ -80,7 +80,7 @@ EDGES = [
 
 
 def numbers(setting: Setting) -> st.SearchStrategy[Any]:
-    """Numbers at and around the borders of a setting, and ordinary ones."""
+    """Numbers at and around the limits of a setting, and ordinary ones."""
     limits = setting.doc.range
     borders = [each for each in (limits.ge, limits.gt, limits.le, limits.lt, *(limits.each or ())) if each is not None]
     near = [each * factor for each in borders for factor in (1, 1 - 1e-9, 1 + 1e-9, 0.5)]
@@ -104,7 +104,7 @@ def values(setting: Setting, value: Any) -> st.SearchStrategy[Any]:
 
 
 def _places(value: tuple[Any, ...]) -> list[tuple[int, ...]]:
-    """Where numbers stand in nested lists."""
+    """The places of numbers in nested lists."""
     found = []
     for i, item in enumerate(value):
         below = _places(item) if isinstance(item, tuple) else [()] if not isinstance(item, str) else []
@@ -119,7 +119,7 @@ def _put(value: tuple[Any, ...], at: tuple[int, ...], number: float) -> tuple[An
 
 @st.composite
 def changes(draw: st.DrawFn) -> tuple[str, list[tuple[str, Any]]]:
-    """A config by name, and some of its settings with other values."""
+    """The name of a config, and new values for some of its settings."""
     source = draw(st.sampled_from(["one", "two"]))
     chosen = draw(st.lists(st.sampled_from(SETTINGS[source]), min_size=1, max_size=3))
     return source, [(path, draw(values(setting, value))) for path, setting, value in chosen]
@@ -145,7 +145,7 @@ def test_the_engine_takes_what_the_config_accepts(changed):
     assume(all(species.population.initial_count < 1000 for species in config.species.values()))
     assume(all(food.initial_count < 1000 for food in config.food.values()))
     refused = _refusal(config)
-    assert refused is None or refused.startswith("initial_placement"), refused  # which only placing them tells
+    assert refused is None or refused.startswith("initial_placement"), refused  # known only after placing them
 
 
 def _refusal(config: Config) -> str | None:

@@ -1,8 +1,8 @@
-"""Whatever mechanisms and species meet in a world, every door takes it.
+"""Every door, that is, every way to use a world, accepts every combination of mechanisms and species.
 
-Worlds are drawn so that every pair of mechanisms meets, then again with other values. HEDON_WORLDS=N tries N worlds
-instead of the first ones, which have every pair once; HEDON_RECORDED=N takes N of them through the doors of records,
-too; HEDON_WORLD=I tries the I-th world alone, through all doors.
+Worlds are drawn to combine every pair of mechanisms, then again with other values. HEDON_WORLDS=N tries N worlds
+instead of the first ones, which cover every pair once; HEDON_RECORDED=N also takes N of them through the doors for
+records; HEDON_WORLD=I tries only the I-th world, through all doors.
 """
 
 import os
@@ -21,18 +21,18 @@ pytest.importorskip("numba", reason='needs the optional package: pip install "he
 
 SEED = 1
 SIZE = 18
-"""Mechanisms of a world."""
+"""Number of mechanisms in a world."""
 WORLDS = int(os.environ.get("HEDON_WORLDS", "0"))
 RECORDED = int(os.environ.get("HEDON_RECORDED", "4"))
 ONLY = os.environ.get("HEDON_WORLD")
 PARTS = 16 if WORLDS else 1
-"""Parts of many worlds, which several processes can try at once."""
+"""Number of parts of many worlds, which several processes can try at once."""
 REPORTED = 20
-"""Of so many recorded worlds one gets a report with its figures."""
+"""One in this many recorded worlds gets a report with figures."""
 SHOWN = 3
-"""Failures that are told in full."""
+"""Number of failures shown in full."""
 FULL = 100
-"""Of so many worlds at most one may be refused since its first agents and foods find no room in it."""
+"""At most one in this many worlds may be refused because its first agents and foods do not fit."""
 
 
 def tried() -> Iterator[tuple[int, Mixture]]:
@@ -49,7 +49,7 @@ def tried() -> Iterator[tuple[int, Mixture]]:
 
 
 def failures(trial: Trial, every: int, number: int) -> Iterator[str]:
-    """The doors that do not take a world, each with what it says."""
+    """The doors that refuse a world, each with its error."""
     recorded = ONLY is not None or number % every == 0
     report = ONLY is not None or number % (every * REPORTED) == every
     for door, enter in doors(trial, recorded=recorded, report=report):
@@ -62,7 +62,7 @@ def failures(trial: Trial, every: int, number: int) -> Iterator[str]:
 
 @pytest.fixture
 def compiled_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Compiles each rule once for all doors, which takes half a second: these rules read nothing beside their text."""
+    """Compiles each rule once for all doors, since it takes half a second; these rules depend only on their text."""
     compiled = Rule.compiled.func
     kept: dict[tuple[object, ...], object] = {}
 

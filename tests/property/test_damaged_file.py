@@ -1,6 +1,6 @@
-"""Damaged files of a run: whatever is cut or changed in one of them, each command reads on or says so in one sentence.
+"""Damaged files of a run: whatever is truncated or changed, each command reads on or reports it in one sentence.
 
-HEDON_DAMAGED=N damages N files for each command and kind of damage, instead of the one or two of the suite.
+HEDON_DAMAGED=N damages N files for each command and kind of damage instead of the default number.
 """
 
 import os
@@ -53,8 +53,8 @@ def original(tmp_path_factory):
 
 
 def command(name: str, run: Path, out: Path) -> str:
-    """Calls a command; returns what it says where it refuses, "" where it does not."""
-    if name == "resume":  # which changes its run
+    """Calls a command; returns its message if it refuses, otherwise ""."""
+    if name == "resume":  # it changes its run
         shutil.copytree(run, f"{out}-resumed")
     arguments = [each.format(run=run, out=out) for each in (COMMANDS | SLOW)[name]]
     done = CliRunner().invoke(app, arguments)
@@ -104,7 +104,7 @@ def test_a_part_cut_in_half_is_named(original, tmp_path, name):
         part = part_paths(run, table)[-1]
         part.write_bytes(part.read_bytes()[: part.stat().st_size // 2])
     said = command(name, run, tmp_path / "cut")
-    assert name in ("fault", "branch") or "part-000" in said  # these read checkpoints alone
+    assert name in ("fault", "branch") or "part-000" in said  # these read only checkpoints
 
 
 NEVER = {
@@ -127,13 +127,13 @@ NEVER = {
     "angle": [float("nan"), 3e38, -3e38],
     "w_normal": [float("inf"), 1e30],
 }
-"""What a file may hold that no run has written."""
+"""Values that a file may hold although no run writes them."""
 
 
 @pytest.mark.repeated
 @pytest.mark.parametrize("name", [*COMMANDS, *(pytest.param(name, marks=pytest.mark.long) for name in SLOW)])
 def test_values_that_no_run_has_end_no_command_in_a_traceback(original, tmp_path, name):
-    """In its first, its last or a middle row."""
+    """In the first, the last or a middle row."""
     draw = random.Random(name)
     run = Path(shutil.copytree(original, tmp_path / "run"))
     for table in ("agents", "population", "frames"):

@@ -1,6 +1,6 @@
 """Nonsense in, one message out: no config and no command line ends in a traceback, a hang, or half a run.
 
-HEDON_FUZZ=N tries N examples of each kind instead of the few of the suite.
+HEDON_FUZZ=N tries N examples of each kind instead of the default number.
 """
 
 import os
@@ -42,7 +42,7 @@ TABLES = (
     *(f"species.predator.genome.{name}" for name in ("learning.gamma", "learning.gama", "mutation.w_prey", "family.x")),
     *("hazard.schedule.scale", "species.prey.hazard.schedule.scole", "food.normal.schedule.capacity", "species.shark"),
 )
-"""Tables that a config may have, and some that are spelled wrongly."""
+"""Tables that a config may have, and some with misspelled names."""
 PATHS = [path for preset in ("poison", "predator", "pitfall") for path, _, _ in leaves(load_config(preset))]
 PLAIN = [
     (path, setting)
@@ -76,7 +76,7 @@ name = st.one_of(
 
 
 def mutate(source: str, edits: list[tuple[int, int, str]]) -> str:
-    """Replaces, deletes or inserts at some places of a text."""
+    """Replaces, deletes or inserts parts of a text."""
     for where, length, new in edits:
         at = where % (len(source) + 1)
         source = source[:at] + new + source[at + length :]
@@ -96,7 +96,7 @@ line = st.one_of(
 
 
 def allowed(path: str, setting: Setting) -> st.SearchStrategy[str]:
-    """A line that gives a setting what its range allows, alone at least."""
+    """A line that gives a setting a value that is valid, at least on its own."""
     if setting.choices:
         return st.sampled_from(setting.choices).map(lambda choice: f'{path} = "{choice}"')
     low, high = (-1e3 if setting.doc.range.ge is None else setting.doc.range.ge), setting.doc.range.le
@@ -152,7 +152,7 @@ def load_from_text(content: str, path: Path) -> Config:
 
 
 def run_briefly(config: Config) -> bool:
-    """What passes as a config can be lived in, or the engine says why not."""
+    """Every valid config can be simulated, or the engine says why not."""
     size = [own.population for own in config.species.values()]
     if any(config.physics.substeps * own.capacity > 10**5 or own.initial_count > 500 for own in size):
         return False
@@ -162,7 +162,7 @@ def run_briefly(config: Config) -> bool:
 
 
 def outcome(call: Callable[[], Any], error: type[HedonError]) -> tuple[Any, Any]:
-    """The message of a call that ends with an error, and what comes of it else."""
+    """The error message of a call that fails, and the result of one that does not."""
     try:
         return None, call()
     except error as raised:

@@ -1,7 +1,7 @@
-"""Forecasts of what is eaten, against worlds: laws of places, growth, arenas, bodies and costs are drawn.
+"""Forecasts of intake, compared with worlds whose placements, growth, arenas, bodies and costs are drawn.
 
-The factor, which 19 of 20 settings keep, was chosen on other draws than these. HEDON_INTAKE=N compares N settings
-instead of the few of the suite.
+The factor, which holds for 19 of 20 settings, was chosen from other draws. HEDON_INTAKE=N compares N settings
+instead of the default number.
 """
 
 import os
@@ -17,15 +17,15 @@ from hedon.error import EngineError
 from hedon.experiment.simulation import Simulation
 
 FIRST = 1_000_000
-"""The first seed of the settings that are compared; those below it are for development."""
+"""The first seed of the compared settings; lower seeds are for development."""
 SETTINGS = int(os.environ.get("HEDON_INTAKE", "4"))
 PARTS = 10 if SETTINGS > 100 else 1
-"""Parts of many settings, which several processes can compare at once."""
+"""Number of parts of many settings, which several processes can compare at once."""
 WORLDS = 6
 LEARNERS = 5
-"""In one of so many settings agents learn, which takes ten times as long."""
+"""Agents learn in one of this many settings, which takes ten times as long."""
 SCATTER = 3.0
-"""Standard errors of the mean over worlds by which it may lie beyond the factor."""
+"""Number of standard errors by which the mean over worlds may lie outside the factor."""
 
 
 def eaten(config: Config) -> np.ndarray:
@@ -44,7 +44,7 @@ def eaten(config: Config) -> np.ndarray:
 
 
 def misses(seed: int) -> list[str]:
-    """The kinds of food of a setting of which worlds eat more or less than forecast."""
+    """The kinds of food of which the worlds of a setting eat more or less than forecast."""
     config = draw_setting(seed, "ppo" if seed % LEARNERS == LEARNERS - 1 else "random")
     found, measured = forecast(config), eaten(config)
     cannot = any("cannot start" in text for text in found.warnings)

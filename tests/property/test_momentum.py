@@ -1,4 +1,4 @@
-"""Collisions among free bodies keep momentum, whatever the scene."""
+"""Collisions among free bodies conserve momentum, whatever the scene."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ def moments(scene):
 @settings(max_examples=60, deadline=None)
 @given(cluster=clusters())
 def test_cluster_keeps_linear_momentum(solver, cluster):
-    """Whatever the solver, as long as no body is so fast that it is capped."""
+    """With either solver, as long as no speed is capped."""
     places, velocity, spin = cluster
     scene = make_scene(places, linear_damping=0.0, angular_damping=0.0, solver=solver, max_speed=1e4)
     scene.array("velocity_x")[:], scene.array("velocity_y")[:] = velocity.T
@@ -51,8 +51,8 @@ def test_cluster_keeps_linear_momentum(solver, cluster):
 @settings(max_examples=60, deadline=None)
 @given(turn=st.floats(0, 2 * np.pi), motion=st.tuples(speeds, speeds, speeds, speeds, *2 * [st.floats(-1, 1)]))
 def test_pair_keeps_angular_momentum(solver, turn, motion):
-    """Friction turns orbital into spin momentum and back: the arm is where both surfaces meet. The position
-    correction, left out here, moves bodies and not their velocities, and so changes it."""
+    """Friction turns orbital into spin momentum and back, with an arm that ends where both surfaces meet. The position
+    correction, left out here, moves bodies without changing velocities, and so changes angular momentum."""
     ax, ay, bx, by, spin_a, spin_b = motion
     between = 19.9 * np.array([np.cos(turn), np.sin(turn)])
     still = {"linear_damping": 0.0, "angular_damping": 0.0, "position_passes": 0}
@@ -67,5 +67,5 @@ def test_pair_keeps_angular_momentum(solver, turn, motion):
         "angular_velocity"
     ).astype(float).sum()
     np.testing.assert_allclose(linear.sum(0), before[0], atol=1e-3)
-    # Magnitudes are about 31 · 3 · 30 + 1571: float32 velocities leave some 1e-6 of that per pass.
+    # Magnitudes are about 31 · 3 · 30 + 1571; float32 velocities lose about 1e-6 of that per pass.
     np.testing.assert_allclose(angular, before[1], atol=0.02)

@@ -1,4 +1,4 @@
-"""A folder's name is printed as it is by every command, whatever characters it has, and never read as anything else."""
+"""Every command prints a folder's name unchanged, whatever its characters, and never reads it as anything else."""
 
 import io
 import shutil
@@ -32,7 +32,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _said(words: list[str]) -> str:
-    """What a command prints, on both streams, with line ends that are not of its own making."""
+    """The output of a command on both streams."""
     out, err = io.StringIO(), io.StringIO()
     argv = patch.object(sys, "argv", ["hedon", *words])
     with argv, redirect_stdout(out), redirect_stderr(err), pytest.raises(SystemExit) as ended:

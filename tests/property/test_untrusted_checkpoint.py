@@ -1,6 +1,6 @@
-"""A checkpoint may come from anywhere: what cannot be is refused, and nothing that is accepted harms the engine.
+"""A checkpoint may come from anywhere: impossible ones are refused, and accepted ones do not harm the engine.
 
-HEDON_SPOILED=N spoils N worlds of many mechanisms a hundred times each, instead of the few of the suite.
+HEDON_SPOILED=N spoils N worlds of many mechanisms 100 times each instead of 12 worlds 20 times each.
 """
 
 import contextlib
@@ -20,7 +20,7 @@ from hedon.error import EngineError
 
 WORLDS = int(os.environ.get("HEDON_SPOILED", "12"))
 SPOILED = 100 if "HEDON_SPOILED" in os.environ else 20
-"""Spoiled checkpoints of one world."""
+"""Number of spoiled checkpoints per world."""
 CROWD = ("arena.width=220", "arena.height=180", "motor.min_force=20", "food.normal.initial_count=12")
 LIVELY = (
     *RELEASED,
@@ -67,13 +67,13 @@ BOUNDED = {  # array: a value that no world has
     "impulse.body": -1.0,
 }
 PLACE = {"observation": 128, "impulse.body": 0}
-"""Where the value goes, if not to the end: the channel of a ray, the normal impulse of a pair."""
+"""Where the value goes, if not at the end: the channel of a ray, the normal impulse of a pair."""
 
 
 @pytest.fixture(scope="module")
 def saved():
     simulation = make_simulation(*LIVELY)
-    simulation.run(80)  # in the midst of a window, so that there are rollouts
+    simulation.run(80)  # in the middle of a window, so that there are rollouts
     while simulation.worlds[0].step < 127:
         simulation.run(1)
         arrays = simulation.engine.save(0)
@@ -93,7 +93,7 @@ def refused(target, arrays, words):
     before = target.worlds[0].digest()
     with pytest.raises(ValueError, match=words):
         target.engine.restore(0, arrays)
-    assert target.worlds[0].digest() == before, "a refused checkpoint leaves the world as it was"
+    assert target.worlds[0].digest() == before, "a refused checkpoint changed the world"
 
 
 @pytest.mark.parametrize("name", BOUNDED)
@@ -104,8 +104,8 @@ def test_a_value_out_of_bounds_is_refused(saved, target, name):
 
 
 @pytest.mark.parametrize("name", ["first_moment", "second_moment"])
-def test_an_optimizer_that_has_done_nothing_holds_nothing(saved, target, name):
-    """Who takes the slot later begins with what is there."""
+def test_an_unused_optimizer_must_be_empty(saved, target, name):
+    """The next agent in the slot starts with what is there."""
     new = int(np.flatnonzero(saved["updates"] == 0)[-1])
     spoiled = saved[name].copy()
     spoiled[new, 3] = 1e-9
@@ -146,7 +146,7 @@ def test_a_checkpoint_of_another_shape_says_so(saved):
 
 
 def spoil(saved, draw):
-    """Some numbers of some arrays, each with random bytes, or with a value that is small or at an edge."""
+    """A checkpoint with some numbers replaced by random bytes or by a small or extreme value."""
     spoiled = dict(saved)
     names = sorted(name for name, array in saved.items() if array.size)
     for name in draw.choices(names, k=draw.randint(1, 3)):
@@ -163,11 +163,11 @@ def spoil(saved, draw):
 
 EDGES = (-1, 0, 1, 2, 3, 7, 63, 64, 255, 10_000, 2**31 - 1, -(2**31), 1e-30, -0.5, 1e6, 3e38)
 CALM = ("curious", "swamp", "uncrowded")
-"""Rules are compiled for each world, which takes longer than its life."""
+"""Mechanisms left out, since compiling their rules for each world takes longer than the simulation."""
 
 
 def mixtures(count):
-    """Worlds of many mechanisms, other ones than those of the test of combinations."""
+    """Worlds of many mechanisms, different from those in the test of combinations."""
     for world, _ in islice(worlds(3, 18), count):
         kept = tuple(part for part in world.parts if part.mechanism.name not in CALM)
         yield Mixture(world.species, kept)
@@ -176,7 +176,7 @@ def mixtures(count):
 @pytest.mark.repeated
 @pytest.mark.parametrize("number", range(WORLDS))
 def test_spoiled_worlds_of_every_mechanism_are_refused_or_do_no_harm(number, tmp_path):
-    """What passes is lived through, past the learning of its window. A signal ends the test with its number shown."""
+    """Accepted worlds are simulated past the learning of their window. A signal ends the test with its number shown."""
     world = next(islice(mixtures(WORLDS), number, None))
     config, draw = world.config(tmp_path), random.Random(number)
     simulation = begin(world, config, (5,), 1)
@@ -197,7 +197,7 @@ def test_spoiled_worlds_of_every_mechanism_are_refused_or_do_no_harm(number, tmp
 
 
 def test_random_numbers_are_refused_or_do_no_harm(saved):
-    """Every byte of a small array, or any number of a large one, at random; what passes is then lived through."""
+    """One to three numbers of any arrays get random bytes; accepted worlds are then simulated."""
     passed = []
 
     @settings(max_examples=150, deadline=None)
@@ -210,7 +210,7 @@ def test_random_numbers_are_refused_or_do_no_harm(saved):
 
 
 def passes(saved, data: st.DataObject) -> bool:
-    """Whether the engine takes the arrays with numbers replaced, and then they do no harm."""
+    """Whether the engine accepts the arrays with some numbers replaced; simulates the world if so."""
     spoiled = dict(saved)
     for _ in range(data.draw(st.integers(1, 3))):
         name = data.draw(st.sampled_from(sorted(name for name, array in saved.items() if array.size)))
@@ -224,6 +224,6 @@ def passes(saved, data: st.DataObject) -> bool:
     with contextlib.suppress(ValueError, EngineError):
         simulation.engine.restore(0, spoiled)
         taken = True
-        simulation.run(40)  # to the end of the window, and past its learning
+        simulation.run(40)  # to the end of the window and past its learning
     simulation.worlds[0].observations()
     return taken

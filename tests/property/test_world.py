@@ -1,4 +1,4 @@
-"""What holds in every world at every time."""
+"""Invariants of every world at any time."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ LIVELY = (*QUICK, "birth.kappa=0.02", "hazard.kappa=0.2")
 
 
 def ledger_gap(simulation):
-    """What the living hold, less what the ledger says that they hold."""
+    """The energy that living agents hold, minus what the ledger says they hold."""
     held = simulation.worlds[0].agents()["energy"].sum()
     c = simulation.worlds[0].counters
     income = c["energy_initial"] + c["energy_eaten"] + c["energy_forgiven"]
@@ -100,7 +100,7 @@ def test_mutation_noise_is_cauchy_and_frozen_noise_repeats_by_number_of_birth(no
     )
     tables = []
     for _ in range(2):
-        # Frozen noise depends on the number of births in the window before, so make it the same.
+        # Frozen noise depends on the number of births in the previous window, so make that equal.
         arrays = simulation.engine.save(0)
         arrays["head.births_before"][:] = 5
         simulation.engine.restore(0, arrays)

@@ -1,4 +1,4 @@
-"""A world for each mechanism beyond the first paper, and some in which mechanisms meet."""
+"""A world for each mechanism beyond the first paper, and some that combine mechanisms."""
 
 from reference_case.case import Case, each, kind
 from reference_case.first_paper import FIRST_PAPER

@@ -1,4 +1,4 @@
-"""What a case is: a short, lively world, and what must happen in it."""
+"""The definition of a case: a short, lively world, and what must happen in it."""
 
 from dataclasses import dataclass, field
 
@@ -19,7 +19,7 @@ LIVELY = (
 
 @dataclass(frozen=True)
 class Case:
-    """A world for one mechanism, or several, and the least number of times that each thing must happen in it."""
+    """A world for one or more mechanisms, and the least number of times that each event must happen in it."""
 
     mechanism: str
     settings: tuple[str, ...] = ()
@@ -39,7 +39,7 @@ def each(species: str, *settings: str) -> tuple[str, ...]:
 
 
 def kind(name: str, form: str, centers: str, sd: str, *more: str) -> tuple[str, ...]:
-    """A kind of food that grows in places of its own."""
+    """A kind of food with its own placement."""
     place = (f'form="{form}"', f"centers={centers}", f"sd={sd}", *more)
     own = ("gives.energy=0.4", "growth_rate=0.8", "capacity=12", "initial_count=4")
     return tuple(f"food.{name}.{setting}" for setting in (*own, *(f"placement.{each}" for each in place)))

@@ -1,4 +1,4 @@
-"""Worlds of the first paper: one species that eats food, by the settings of each fidelity."""
+"""Worlds of the first paper: one species that eats food, with the settings of each fidelity."""
 
 from reference_case.case import Case
 

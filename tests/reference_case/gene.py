@@ -1,4 +1,4 @@
-"""Worlds whose agents have numbers of their own, which genes set."""
+"""Worlds whose agents have individual numbers that genes set."""
 
 from reference_case.case import Case, each
 
@@ -11,7 +11,7 @@ BIRTHS = ("birth.kappa", "birth.beta", "birth.logit_offset", "birth.distance_sd"
 
 
 def genes(*paths: str, limit: float = 0.3) -> tuple[str, ...]:
-    """A gene for each number, whose founders differ."""
+    """A gene for each number, with founders that differ."""
     laws = (f"genome.set.{path}.initial_sd=0.15" for path in paths)
     return (*laws, *(f"genome.mutation.{gene_column(path)}.limit={limit}" for path in paths))
 

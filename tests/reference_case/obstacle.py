@@ -1,4 +1,4 @@
-"""Worlds with obstacles: that do harm, by schedule and by kind of body, and that rays read wrongly."""
+"""Worlds with obstacles that do harm, depending on a schedule and on the body, and that rays misread."""
 
 from reference_case.case import Case, each
 

@@ -1,4 +1,4 @@
-"""Worlds for what agents are paid for and how, and for what they observe of themselves."""
+"""Worlds that cover what agents are paid for and how, and what they observe of themselves."""
 
 from reference_case.case import Case, each
 
