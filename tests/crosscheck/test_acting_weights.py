@@ -1,4 +1,4 @@
-"""Acting by weights of 16 bits: how they are rounded, that they are what is read, and how far that moves actions."""
+"""Acting with 16-bit weights: how they are rounded, that the engine reads them, and how far they shift actions."""
 
 import numpy as np
 import ppo_reference as reference
@@ -13,13 +13,13 @@ learning = _engine.learning
 
 
 def both_ways(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Every number with every other, as first and second of a pair."""
+    """All pairs of numbers, as arrays of their first and second members."""
     first, second = np.meshgrid(numbers, numbers)
     return first.ravel(), second.ravel()
 
 
 def cases() -> tuple[np.ndarray, np.ndarray]:
-    """Pairs at the borders of rounding, and at random over 60 powers of ten."""
+    """Pairs at rounding boundaries, and random pairs over 60 powers of ten."""
     upper = np.array([0x3F80, 0x3F81, 0x3FFF, 0x4000, 0x0080, 0x7F00], np.uint32)[:, None] << 16
     border = (upper + np.array([0, 1, 0x7FFF, 0x8000, 0x8001, 0xFFFF], np.uint32)).ravel().view(np.float32)
     rng = np.random.default_rng(1)
@@ -34,13 +34,13 @@ def test_pairs_are_bit_for_bit_the_nearest():
     np.testing.assert_array_equal(learning.pair_weights(first, second).view(np.uint32), pair(first, second).view("u4"))
 
 
-def test_both_of_a_pair_are_off_by_a_256th_at_most():
+def test_both_of_a_pair_are_off_by_at_most_1_in_256():
     given = cases()
     for read, wanted in zip(unpair(learning.pair_weights(*given)), given, strict=True):
         assert np.abs(read / wanted.astype(np.float64) - 1).max() <= 2**-8
 
 
-def test_pairs_of_zeros_and_of_what_is_no_number():
+def test_pairs_with_zero_infinity_or_nan():
     zero, one, inf = (np.array([x], np.float32) for x in (0, 1, np.inf))
     first, second = unpair(learning.pair_weights(zero, one))
     assert 0 <= first[0] < 1e-40
@@ -63,12 +63,12 @@ def test_forward_reads_the_rounded_weights(kernel: str):
         output = learning.forward(kernel, shape, case.params, case.observation, rounded=True)
         expected = reference.forward(rounded.astype(np.float64), case.full())[2]
         np.testing.assert_allclose(output, expected, rtol=1e-5, atol=3e-6)
-        # Only the weights are rounded: by weights rounded beforehand it is the forward pass of float32.
+        # Only the weights are rounded: with weights rounded beforehand, it is the float32 forward pass.
         np.testing.assert_array_equal(output, learning.forward(kernel, shape, rounded, case.observation))
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-def test_a_weight_that_is_no_number_comes_out(kernel: str):
+def test_a_nan_weight_propagates(kernel: str):
     case = random_case(8, ONE_KIND_RAW, 64)
     for at in (0, 16, len(case.params) - AFTER_W2 - 1, len(case.params) - AFTER_W2 - 17):
         params = case.params.copy()

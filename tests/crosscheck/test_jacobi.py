@@ -1,4 +1,4 @@
-"""The contact solver of the released code: against its recorded motions, and against the same in plain NumPy."""
+"""The contact solver of the paper's program, compared with its recorded motions and with plain NumPy."""
 
 import math
 from pathlib import Path
@@ -15,17 +15,17 @@ KINDS = ("body", "circle", "wall")
 
 
 def arena_scene(places, circles=()):
-    """A scene of the baseline's arena under the solver."""
+    """A scene in the baseline's arena with the solver."""
     ring = walls(ArenaConfig())
     return make_scene(places, circles, ring, solver="jacobi", outer_walls=len(ring))
 
 
 def test_crowd_moves_as_recorded():
-    """150 agents among 80 foods. Rounding grows in jams, so that the last of 60 steps agrees for nine in ten."""
+    """150 agents among 80 foods. Rounding errors grow in jams, so in the last of 60 steps nine in ten agree."""
     agents = RECORDED["agent"]
     scene = arena_scene(agents[:, :2], RECORDED["food"])
     scene.array("angle")[:] = agents[:, 2]
-    bounds = {5: (2e-4, 2e-4), 20: (2e-4, 1e-3), 60: (1e-3, 0.02)}  # of nine in ten, and of all [u]
+    bounds = {5: (2e-4, 2e-4), 20: (2e-4, 1e-3), 60: (1e-3, 0.02)}  # for nine in ten, and for all [u]
     for step in range(1, 61):
         drive(scene, *RECORDED["force"].T)
         scene.step()
@@ -43,7 +43,7 @@ def test_crowd_moves_as_recorded():
 
 @pytest.mark.parametrize(("name", "places"), [("pair", [[200, 200], [200, 221]]), ("wall", [[240, 348]])])
 def test_push_moves_as_recorded(name, places):
-    """One agent pushes another, or a wall, with all its force."""
+    """One agent pushes another, or a wall, with full force."""
     scene = arena_scene(places)
     force = np.zeros((2, len(places)))
     force[:, 0] = 80.0
@@ -73,11 +73,11 @@ def reference_of(scene, circles, ring):
 
 
 def dense_scene(seed, corner=19.0, **settings):
-    """24 bodies and 6 circles in a small arena, thrown in without a look at what overlaps, and moving fast."""
+    """24 fast bodies and 6 circles in a small arena, many of them overlapping."""
     rng = np.random.default_rng(seed)
     ring = arena_walls(150.0, 120.0, corner).astype(np.float32)
     circles = rng.uniform(15, 105, (6, 2)).astype(np.float32)
-    # Bodies that overlap by more than half would fly about; with far fewer there would be no jam.
+    # Bodies that overlap by more than half would fly apart; with far fewer bodies, there would be no jam.
     inset = 7.0 if corner < 10.0 else 14.0
     places = [np.array([x, y]) for x in (inset, 150.0 - inset) for y in (inset, 120.0 - inset)]
     while len(places) < 24:
@@ -92,9 +92,9 @@ def dense_scene(seed, corner=19.0, **settings):
 
 
 @pytest.mark.parametrize(("seed", "corner"), [(0, 19.0), (1, 19.0), (2, 4.0), (3, 4.0)])
-def test_each_substep_is_that_of_the_reference(seed, corner):
-    """From the engine's own state and impulses, substep by substep: motion, kept impulses, and who touched whom. Where
-    corners are narrower than a body, their walls' ends matter."""
+def test_each_substep_matches_the_reference(seed, corner):
+    """From the engine's own state and impulses, substep by substep: motion, kept impulses, and which bodies touched. If
+    corners are narrower than a body, the ends of their walls matter."""
     scene, circles, ring, rng = dense_scene(seed, corner, substeps=1)
     seen: dict[str, int] = dict.fromkeys(KINDS, 0)
     compared = bounced = 0
@@ -127,7 +127,7 @@ def test_each_substep_is_that_of_the_reference(seed, corner):
     assert min(seen.values()) > 20
 
 
-def test_a_step_is_five_substeps_pushed_in_the_first():
+def test_a_step_has_five_substeps_with_force_in_the_first():
     scene, circles, ring, _ = dense_scene(7)
     reference = reference_of(scene, circles, ring)
     scene.array("force_x")[:] = 60.0
@@ -138,8 +138,8 @@ def test_a_step_is_five_substeps_pushed_in_the_first():
     np.testing.assert_allclose(read(scene).T, reference.bodies, atol=2e-4)
 
 
-def test_contacts_begin_at_an_overlap_and_touch_before():
-    """The threshold's sign is the released code's: 0.02 u of overlap are left to themselves, but felt."""
+def test_bodies_touch_before_their_contact_pushes():
+    """The threshold has the sign of the paper's program: an overlap below 0.02 u is felt but not corrected."""
     for depth, solid in ((LEAST_DEPTH - 0.001, False), (LEAST_DEPTH + 0.001, True)):
         places = [[100.0, 100.0], [120.0 - depth, 100.0]]
         scene = make_scene(places, [[100.0, 114.0 - depth]], solver="jacobi", substeps=1)
@@ -162,8 +162,8 @@ def test_a_stored_impulse_lasts_while_the_pair_overlaps():
     assert scene.pairs("body")[0][2:4] == (0.0, 0.0)
 
 
-def test_a_wall_of_the_ring_pushes_from_its_inside_and_one_within_from_both():
-    """A center beyond the ring is not pushed but put back onto the wall, with the velocity that it had."""
+def test_an_outer_wall_pushes_from_its_inside_and_an_inner_wall_from_both_sides():
+    """A center beyond the ring is not pushed but put back onto the wall, with its velocity unchanged."""
     ring = [[0.0, 100.0, 200.0, 100.0], [200.0, 100.0, 200.0, 0.0], [200.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 100.0]]
     for outer, pushed in ((4, [False, True]), (0, [True, True])):
         scene = make_scene([[60.0, 109.0], [140.0, 91.0]], walls=ring, solver="jacobi", substeps=1, outer_walls=outer)
@@ -174,7 +174,7 @@ def test_a_wall_of_the_ring_pushes_from_its_inside_and_one_within_from_both():
 
 
 def test_the_cap_comes_before_the_contacts():
-    """A deep overlap parts faster than any body may fly."""
+    """A deep overlap separates bodies faster than the speed cap allows."""
     scene = make_scene([[100.0, 100.0], [101.0, 100.0]], solver="jacobi", substeps=1)
     scene.array("velocity_x")[1] = 1000.0
     scene.step()

@@ -94,7 +94,7 @@ def test_update_of_ten_epochs(kernel: str, target: str):
     assert updates == 40
     moved = np.abs(expected - case.params)
     assert moved.max() > 2e-3
-    # A step of Adam near a gradient of 0 may turn to the other side, so single parameters differ by more.
+    # An Adam step near a gradient of 0 may change its sign, so single parameters differ by more.
     assert np.abs(params - expected).mean() < 1e-3 * moved.mean()
     assert np.abs(params - expected).max() < 0.05 * moved.max()
     np.testing.assert_allclose(seen, losses, rtol=1e-4, atol=1e-5)
@@ -123,7 +123,7 @@ def test_forward_of_saturated_units(kernel: str):
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-def test_learn_is_gae_then_update_by_the_stream_s_minibatches_in_order_of_time(kernel: str):
+def test_learn_is_gae_then_update_with_the_streams_minibatches_sorted_by_time(kernel: str):
     case = random_case(12, SMALL, 64)
     settings = config(minibatch_size=16)
     value, reward = case.target, case.advantage
@@ -147,7 +147,7 @@ def test_permutations_are_permutations_and_uniform():
     order = learning.permutation(1, 2, 3, 50, 400)
     assert (np.sort(order, axis=1) == np.arange(50)).all()
     assert len(np.unique(order, axis=0)) == 400
-    # Each number in each place about equally often: mean 8, Poisson; the chi-square over 50 x 50 cells.
+    # Each number is in each place about equally often: Poisson with mean 8; chi-square over 50 x 50 cells.
     counts = np.stack([np.bincount(order[:, place], minlength=50) for place in range(50)])
     chi_square = ((counts - 8.0) ** 2 / 8.0).sum()
     assert abs(chi_square - 49 * 49) < 5 * np.sqrt(2 * 49 * 49)

@@ -1,8 +1,8 @@
 """The same scenes in pymunk (Chipmunk 7), an independent engine of the same family.
 
 pymunk moves bodies before it looks for contacts, and bounces without a threshold; scenes are set so that both
-engines see the same contacts. Results of one collision agree to the difference of the arms (see there); rest
-states to what the different position corrections leave.
+engines see the same contacts. Single collisions agree up to the difference of the arms (see there); states of rest
+agree up to the effect of the different position corrections.
 """
 
 import math
@@ -30,7 +30,7 @@ class Rival:
     """A pymunk space with our bodies, circles and walls."""
 
     def __init__(self, bodies, circles=(), walls=(), restitution=0.4, friction=0.2, damping=False):
-        self.coefficients = math.sqrt(friction), math.sqrt(restitution)  # pymunk multiplies those of a pair
+        self.coefficients = math.sqrt(friction), math.sqrt(restitution)  # pymunk multiplies the coefficients of a pair
         self.space = pymunk.Space()
         self.space.iterations = 60
         self.space.collision_slop = 0.005
@@ -79,7 +79,7 @@ class Rival:
 
 
 def free(**settings):
-    """Settings under which one substep is one step of pymunk."""
+    """Settings with which one substep is one step of pymunk."""
     return {"substeps": 1, "linear_damping": 0.0, "angular_damping": 0.0, "velocity_passes": 60} | settings
 
 
@@ -88,8 +88,8 @@ def free(**settings):
 def test_single_collisions_agree(seed, restitution, friction):
     """A pair, or a body and a circle or wall, that approach fast: equal velocities and spins afterwards.
 
-    Not both coefficients at once: pymunk lets the bounce press the friction too, which our order (restitution
-    last, as in Box2D) does not.
+    Not both coefficients at once: in pymunk, the bounce also increases friction, but not in our order (restitution
+    last, as in Box2D).
     """
     rng = np.random.default_rng(seed)
     turn = rng.uniform(0, 2 * np.pi)
@@ -119,7 +119,7 @@ def test_single_collisions_agree(seed, restitution, friction):
     np.testing.assert_allclose(ours.array("angular_velocity"), theirs.spins(), atol=2e-4)
 
 
-def test_pushed_row_hands_on_the_same_impulses():
+def test_pushed_row_transmits_the_same_impulses():
     """Four bodies pushed along a row against a wall: contact k carries the pushes of all behind it."""
     bodies = [[290.0 - 19.98 * i, 100.0] for i in range(4)]
     wall = [[300.0, 0.0, 300.0, 200.0]]
@@ -151,7 +151,7 @@ def test_pushed_row_hands_on_the_same_impulses():
 
 @pytest.mark.parametrize("side", [10.0, 40.0, 90.0])
 def test_pressed_body_rolls_or_slides_at_the_same_speed(side):
-    """A body pressed against a wall and pulled along it rolls where friction suffices, else it slides."""
+    """A body pressed against a wall and pulled along it rolls if friction suffices; otherwise, it slides."""
     wall = [[0.0, 100.0, 480.0, 100.0]]
     ours = make_scene([[60.0, 110.0]], walls=wall, substeps=1)
     ours.array("force_x")[0], ours.array("force_y")[0] = side, -100.0
@@ -186,7 +186,7 @@ def test_pile_comes_to_rest_in_the_same_place():
 
 
 def test_cooling_crowd_loses_energy_at_the_same_rate():
-    """60 bodies among 40 circles, no damping: bounces alone decide the kinetic energy after 20 s."""
+    """60 bodies among 40 circles, no damping: only bounces decide the kinetic energy after 20 s."""
     ratios = []
     for seed in range(6):
         rng = np.random.default_rng(seed)

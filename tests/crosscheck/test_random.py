@@ -51,7 +51,7 @@ def test_uniforms_stay_below_one():
     [
         ("exp", -700, 700, 1e-14),
         ("log", 1e-300, 1e300, 1.5e-14),  # the first term left out of the series: 2/17 · 0.1716^17
-        ("sin", -1e4, 1e4, 1e-11),  # the argument's reduction loses 1e4 · 1e-16 and the constants' last bits
+        ("sin", -1e4, 1e4, 1e-11),  # argument reduction loses 1e4 · 1e-16 and the last bits of the constants
         ("cos", -1e4, 1e4, 1e-11),
     ],
 )

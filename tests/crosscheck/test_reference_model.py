@@ -1,4 +1,4 @@
-"""Every decision of the engine about life and death against the rules in plain Python, step by step."""
+"""Every decision of the engine about life and death, compared with the rules in plain Python, step by step."""
 
 from collections.abc import Iterator
 from importlib.util import find_spec
@@ -22,7 +22,7 @@ from hedon.record.founder import make_founders
 
 SEED = 2**63 + 17
 USUAL = {"births": 5, "deaths": 5}
-"""What happens in every case, at least."""
+"""The least number of each event in every case."""
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -43,7 +43,7 @@ def test_every_step_follows_the_rules(name):
         assert happened[what] >= least, (what, happened)
 
 
-def test_rivals_for_one_food_are_judged_by_the_rules():
+def test_rivals_for_one_food_follow_the_rules():
     simulation = Simulation(load_config("baseline", None, LIVELY), [SEED], threads=1)
     rng, judge = np.random.default_rng(0), Judge(simulation, SEED)
     x, y = (axis.ravel() for axis in np.meshgrid([60.0, 120, 180], [50.0, 100, 150]))
@@ -60,8 +60,8 @@ def test_rivals_for_one_food_are_judged_by_the_rules():
 
 @pytest.mark.parametrize("prey", ["nearest", "all"])
 @pytest.mark.parametrize("sharing", ["one", "each"])
-def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing, prey):
-    """Chains of claims, rivals for one agent, pairs that claim each other, and those who starve meanwhile."""
+def test_crowds_that_eat_one_another_follow_the_rules(sharing, prey):
+    """Chains of claims, rivals for one agent, pairs that claim each other, and agents that starve in the same step."""
     settings = (
         f'world.prey_sharing="{sharing}"',
         f'world.prey_at_mouth="{prey}"',
@@ -86,8 +86,8 @@ def test_crowds_that_eat_one_another_are_judged_by_the_rules(sharing, prey):
         assert judge.happened[what] >= 10, (what, judge.happened[what])
 
 
-def test_founders_given_as_data_live_by_the_rules():
-    """Each gets a row of the table; what it leaves out is drawn as ever."""
+def test_founders_given_as_data_follow_the_rules():
+    """Each gets a row of the table; values that it leaves out are drawn as usual."""
     settings = (
         "genome.learning.action_sd.initial_sd=0.2",
         *each("prey", "birth.kappa=0.2"),
@@ -139,7 +139,7 @@ JUDGED_ELSEWHERE = {
     "world.founders": "a digest that a run sets: tests/contract/test_founders.py",
     "world.networks": "a digest that a run sets: tests/contract/test_frozen.py",
 }
-"""Settings that no case of the model judges, and why."""
+"""Settings that no case of the model checks, and why."""
 
 
 NAMED = ("food", "store", "neighbor", "see", "smell", "pay", "schedule", "mutation", "family", "learning", "extra")
@@ -147,7 +147,7 @@ NAMED = ("food", "store", "neighbor", "see", "smell", "pay", "schedule", "mutati
 
 
 def general(path: str) -> str:
-    """The path of a setting without the names of species and kinds: as `every_setting` has it."""
+    """The path of a setting without the names of species and kinds, as in `every_setting`."""
     parts = path.split(".")
     if parts[0] == "species":
         parts = parts[2:]

@@ -1,4 +1,4 @@
-"""The engine against the rules in plain Python, in worlds of one mechanism and of several at random."""
+"""The engine compared with the rules in plain Python, in worlds of one mechanism and of several random ones."""
 
 from itertools import islice
 
@@ -12,17 +12,17 @@ from hedon.experiment.simulation import Simulation
 
 SEED, DRAW = 5, 1
 STEPS = 48
-"""One window of 32 steps, and half of the next."""
+"""One window of 32 steps and half of the next."""
 TOGETHER = 6
-"""Mechanisms of a random world."""
+"""Number of mechanisms in a random world."""
 BATCH = 5
 REFUSED = 1
-"""Of a batch, how many worlds may be refused, for founders that do not fit or schedules that end too soon."""
+"""Number of worlds in a batch that may be refused, if founders do not fit or schedules end too soon."""
 
 
 def judge_world(world: Mixture, folder) -> bool:
-    """Lives by the rules for a while; whether the world can be. The engine ends those whose bodies are pushed too far
-    into one another."""
+    """Judges a world for a while; returns whether it is possible. The engine stops worlds whose bodies are pushed
+    too far into one another."""
     try:
         config = world.config(folder)
         simulation = Simulation(config, [SEED], threads=1)

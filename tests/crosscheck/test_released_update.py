@@ -1,4 +1,4 @@
-"""One learner's window as the paper's released program computed it: advantages, and its 40 updates.
+"""One learner's window as the paper's program computed it: advantages and 40 updates.
 
 `update.npz`, recorded from that program: observations `obs` (1024, 95; rays by ray and then type), actions before the
 sigmoid `act`, rewards `rew`, values `val`, the bootstrap `nv`, advantages `adv`, targets `tgt`, log-probabilities `lp`,
@@ -25,7 +25,7 @@ def window() -> dict[str, np.ndarray]:
 
 
 def packed(obs: np.ndarray) -> np.ndarray:
-    """The observations as the engine holds them."""
+    """The observations as the engine stores them."""
     rays = obs[:, : RAYS * TYPES].reshape(-1, RAYS, TYPES)
     nearest, kind = rays.max(axis=2), rays.argmax(axis=2)
     hit = nearest > -1
@@ -60,7 +60,7 @@ def test_advantages_and_targets(window):
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-def test_values_are_those_of_the_network_before(window, kernel):
+def test_values_match_the_network_before_the_updates(window, kernel):
     output = _engine.learning.forward(kernel, ONE_KIND_RAW, flat(window, "o_"), packed(window["obs"]))
     np.testing.assert_allclose(output[:, 2], window["val"], atol=1e-5)
 
@@ -68,7 +68,7 @@ def test_values_are_those_of_the_network_before(window, kernel):
 @pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize(("critic", "most"), [("batch_mean", 1e-5), ("per_state", None)])
 def test_forty_updates(window, kernel, critic, most):
-    """Within 1e-5 by the program's own critic; by the correct one another network results."""
+    """Within 1e-5 with the program's own critic; the correct one gives another network."""
     before = flat(window, "o_")
     still, obs, settings = np.zeros_like(before), packed(window["obs"]), config(critic_target=critic)
     act, lp, adv, tgt, perm = (window[name] for name in ("act", "lp", "adv", "tgt", "perm"))

@@ -1,4 +1,4 @@
-"""All that lies between a world and its readings (cells, fans, arcs, culled walls), against rays cast at everything."""
+"""All steps from a world to its readings (cells, fans, arcs, culled walls), compared with rays cast at everything."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def readings(simulation: Simulation) -> tuple[np.ndarray, np.ndarray]:
 
 
 def random_place(simulation: Simulation, rng: np.random.Generator, count: int) -> np.ndarray:
-    """Places anywhere in the arena, one in four of them at its rim, where cells end."""
+    """Places anywhere in the arena, a quarter of them at its rim, where cells end."""
     size = np.array([simulation.config.arena.width, simulation.config.arena.height])
     place = rng.uniform(0.0, size, (count, 2))
     rim = rng.random(count) < 0.25
@@ -86,9 +86,9 @@ def compare(simulation: Simulation, agents: np.ndarray, foods: np.ndarray, watch
         case = reference(simulation, agents.astype(np.float64), foods.astype(np.float64), self)
         expected, kind = cast(case)
         clear = ~is_delicate(case)
-        # Coordinates of some ten thousand u are floats with steps of a thousandth.
+        # Near ten thousand u, float coordinates are a thousandth apart.
         np.testing.assert_allclose(got[self, clear], expected[clear], rtol=0, atol=5e-4)
-        # Where a ray starts inside two bodies, both are at distance 0, and either may be told.
+        # If a ray starts inside two bodies, both are at distance 0, and either may be reported.
         told = clear & (np.abs(got[self] - expected) < 1e-5) & (expected > 0) & (expected < 2)
         np.testing.assert_array_equal(got_kind[self, told], kind[told])
         compared, hits = compared + int(clear.sum()), hits + int((expected[clear] > 0).sum())
@@ -109,7 +109,7 @@ def test_random_scenes_are_seen_as_they_are(name: str):
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-def test_each_kernel_sees_a_full_house(kernel: str):
+def test_each_kernel_sees_a_full_arena(kernel: str):
     simulation = make_simulation(*ROOM, backend=kernel)
     rng = np.random.default_rng(3)
     body = np.column_stack([random_place(simulation, rng, 300), rng.uniform(0, 2 * math.pi, 300)])
@@ -117,7 +117,7 @@ def test_each_kernel_sees_a_full_house(kernel: str):
     assert hits > 500
 
 
-def test_an_agent_alone_sees_walls_only():
+def test_a_lone_agent_sees_only_walls():
     simulation = make_simulation(*ROOM)
     agents = np.array([[30.0, 30.0, 0.3]], np.float32)
     _, hits = compare(simulation, agents, np.zeros((0, 2), np.float32))
@@ -125,10 +125,10 @@ def test_an_agent_alone_sees_walls_only():
     assert (readings(simulation)[1][readings(simulation)[0] > 0] == 2).all()
 
 
-def test_an_agent_on_top_of_another_sees_through_itself_alone():
+def test_an_agent_on_top_of_another_sees_it_but_not_itself():
     simulation = make_simulation(*ROOM)
     set_scene(simulation, [(240, 180, 0.0), (240, 180, 1.0), (240, 260, 0.0)])
     reading, kind = readings(simulation)
-    # Each starts its rays on the rim of the other, which is at its own place: distance 0.
+    # The rays of each start on the rim of the other, which is in the same place: distance 0.
     assert (reading[:2] == 2.0).all()
     assert (kind[:2] == 0).all()

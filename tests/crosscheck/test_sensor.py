@@ -1,4 +1,4 @@
-"""Senses against readings of the released code, and where those say nothing, against geometry."""
+"""Senses compared with readings of the paper's program or, where there are none, with geometry."""
 
 import math
 from pathlib import Path
@@ -34,7 +34,7 @@ def test_there_are_scenes():
 
 def test_a_ray_that_starts_inside_another_body_reads_one():
     simulation = make_simulation()
-    # The other's surface lies 5 u from our center, ahead: every ray starts within it or sees nothing nearer.
+    # The other body's surface is 5 u ahead of our center: every ray starts within it or sees nothing nearer.
     set_scene(simulation, [(240, 180, 0.0), (240, 195, 0.0)])
     rays = simulation.worlds[0].rays()[0]
     assert rays[12, AGENT] == 1.0
@@ -48,29 +48,29 @@ def test_a_ray_that_starts_beyond_a_wall_reads_one():
     assert np.all(rays[8:16, WALL] == 1.0)
 
 
-def test_by_the_released_rule_a_ray_reads_what_lies_behind_the_body_that_it_starts_in():
+def test_under_the_released_rule_a_ray_reads_what_is_behind_the_body_it_starts_in():
     simulation = make_simulation('sensor.ray_inside="behind"')
     set_scene(simulation, [(240, 180, 0.0), (240, 195, 0.0)], [(240, 250)])
     rays = simulation.worlds[0].rays()[0]
     assert rays[11:13, AGENT].tolist() == [-1.0, -1.0]
-    # Two of the 24 rays look 2.6 degrees past the heading: they meet the food's rim somewhat later.
+    # The middle two of 24 rays are 2.6 degrees off the heading, so they meet the food's rim somewhat later.
     np.testing.assert_allclose(rays[11:13, FOOD], 1 - (250 - 4 - 190) / 200, atol=0.02)
-    # From outside nothing changes: the other looks away, and a third sees it as ever.
+    # From outside, nothing changes: a body ahead is seen as usual.
     set_scene(simulation, [(240, 180, 0.0), (240, 230, 0.0)])
     assert simulation.worlds[0].rays()[0, 12, AGENT] == pytest.approx(1 - 30 / 200, abs=2e-3)
 
 
-def test_by_the_released_rule_a_ray_that_starts_beyond_a_wall_does_not_meet_it():
+def test_under_the_released_rule_a_ray_that_starts_beyond_a_wall_misses_it():
     simulation = make_simulation('sensor.ray_inside="behind"')
     set_scene(simulation, [(240, 355, 0.0)])
     rays = simulation.worlds[0].rays()[0]
     assert np.all(rays[8:16, WALL] == -1.0)
-    set_scene(simulation, [(240, 345, 0.0)])  # the start of the ray lies 5 u before it
+    set_scene(simulation, [(240, 345, 0.0)])  # the ray starts 5 u in front of it
     assert simulation.worlds[0].rays()[0, 12, WALL] == pytest.approx(1 - 5 / 200, abs=2e-3)
 
 
 @pytest.mark.parametrize(("rule", "seen"), [("gone", [-1.0, -1.0]), ("seen", [1.0, -1.0])])
-def test_eaten_food_is_seen_for_one_more_step_by_the_released_rule(rule, seen):
+def test_eaten_food_is_seen_for_one_more_step_under_the_released_rule(rule, seen):
     simulation = make_simulation(
         *STILL, *DEATHLESS, *CHILDLESS, f"world.eaten_food={rule}", "food.normal.growth_rate=0"
     )
@@ -82,7 +82,7 @@ def test_eaten_food_is_seen_for_one_more_step_by_the_released_rule(rule, seen):
     after = [world.observations()[0, :72].reshape(24, 3)[12, FOOD]]
     simulation.run(1)
     after.append(world.observations()[0, :72].reshape(24, 3)[12, FOOD])
-    # The contact has pushed it away a little before it ate.
+    # The contact pushed it away a little before it ate.
     np.testing.assert_allclose(after, seen, atol=5e-3)
 
 
@@ -112,7 +112,7 @@ def test_what_lies_behind_is_not_seen():
     assert np.all(rays[:, [AGENT, FOOD]] == -1.0)
 
 
-def test_the_nearest_hit_alone_is_seen_and_distance_scales_linearly():
+def test_only_the_nearest_hit_is_seen_and_distance_scales_linearly():
     simulation = make_simulation("sensor.ray_count=1")
     set_scene(simulation, [(100, 180, -math.pi / 2)], [(150, 180), (200, 180)])
     rays = simulation.worlds[0].rays()[0]
@@ -169,7 +169,7 @@ def test_unit_scaling_of_the_observation():
 def test_touch_is_felt_in_its_sector_and_type(sector):
     simulation = make_simulation("motor.min_force=-1e-6", "motor.max_force=1e-6")
     heading = 0.7
-    direction = heading + math.radians(60 * sector + 30)  # counter-clockwise from the heading; 0 looks along +y
+    direction = heading + math.radians(60 * sector + 30)  # counter-clockwise from the heading; 0 is along +y
     place = (240 - 13 * math.sin(direction), 180 + 13 * math.cos(direction))
     set_scene(simulation, [(240, 180, heading)], [place])
     simulation.run(1)
@@ -184,7 +184,7 @@ def test_touching_a_wall_is_felt_where_the_wall_is():
     set_scene(simulation, [(8, 180, 0.0)])
     simulation.run(1)
     touch = simulation.worlds[0].observations()[0, 72:90].reshape(3, 6)
-    # The left wall lies at +90° from a heading along +y: sector 1.
+    # The left wall is at +90° from a heading along +y: sector 1.
     np.testing.assert_array_equal(np.argwhere(touch), [[WALL, 1]])
 
 

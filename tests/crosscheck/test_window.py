@@ -1,4 +1,4 @@
-"""What learning is given, and who learns: the rollout's rows against the steps, one update against NumPy."""
+"""The input of learning, and which agents learn: rollout rows compared with steps, one update with NumPy."""
 
 from dataclasses import asdict
 from typing import Any
@@ -34,7 +34,7 @@ def rows_of(simulation: Simulation, name: str, slots: Any) -> np.ndarray:
 
 
 def live_a_window(simulation: Simulation) -> dict[int, dict[str, Any]]:
-    """Runs a window step by step; what each agent saw, did and got, by its id, and its learner before the last step."""
+    """Runs a window; returns by id what each agent saw, did and got, and its learner before the last step."""
     world = simulation.worlds[0]
     told: dict[int, dict[str, Any]] = {}
     for t in range(WINDOW):
@@ -112,7 +112,7 @@ def test_a_window_of_learning(case):
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_the_first_update_is_that_of_plain_ppo(case):
+def test_the_first_update_matches_plain_ppo(case):
     simulation = make_simulation(*CASES[case], seeds=(SEED,))
     world, settings = simulation.worlds[0], asdict(simulation.config.species["agent"].learning)
     told = live_a_window(simulation)
@@ -134,13 +134,13 @@ def test_the_first_update_is_that_of_plain_ppo(case):
         order = _engine.learning.permutation(SEED, agent_id, WINDOW, WINDOW, settings["update_epochs"])
         expected, _ = ppo_reference.update(params, x, samples, order, settings)
         change, wanted = world.view("params")[world.living[i]] - params, expected - params
-        # Where a gradient is near Adam's epsilon, its rounding decides; four steps of 3e-4 go 1.2e-3 at most.
+        # If a gradient is near Adam's epsilon, its rounding decides; four steps of 3e-4 move at most 1.2e-3.
         assert np.abs(wanted).max() > 5e-4
         assert np.quantile(np.abs(change - wanted), 0.99) < 2e-6
         assert np.abs(change - wanted).max() < 1.2e-3
 
 
-def test_a_newborn_in_a_used_slot_has_a_mind_of_its_own():
+def test_a_newborn_in_a_used_slot_has_a_new_network():
     simulation = make_simulation(*LIVELY, "population.capacity=60", "hazard.kappa=0.4", seeds=(SEED,))
     world, shape = simulation.worlds[0], network_shape(simulation)
     simulation.run(2 * WINDOW)
