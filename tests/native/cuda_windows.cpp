@@ -1,10 +1,10 @@
-/// Windows of the emulated CUDA kernels against the processor's kernel, without Python: for the sanitizers.
+/// Windows of the emulated CUDA kernels compared with the processor's kernel, without Python, for the sanitizers.
 ///
 ///     cuda_windows STEPS FILE…     two worlds of each file; digests after STEPS steps
-///     cuda_windows --without N …   the same, with a mistake: no thread waits at the N-th barrier of its block, or,
+///     cuda_windows --without N …   the same with an intended bug: no thread waits at the N-th barrier of its block or,
 ///     cuda_windows --without-tile N …   of its tile
 ///
-/// Exit status 1 where a digest differs or a world has a fault, 2 for a wrong file.
+/// Exit status 1 if a digest differs or a world has a fault, 2 if a file is invalid.
 #include <cstring>
 
 #include "cuda/emulator.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int WORLDS = 2;
 
-/// Whether the worlds of a file have the same bits on both sides after `steps` steps.
+/// Whether the worlds of a file have the same bits on both backends after `steps` steps.
 bool same(const std::string& file, int64_t steps) {
   const WorldInput input = read_world(file, WORLDS);
   const auto here = make_worlds(input, WORLDS, false), there = make_worlds(input, WORLDS, true);

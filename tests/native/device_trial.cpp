@@ -1,13 +1,13 @@
-/// Trials of a CUDA device, or of its emulation, without Python: `tests/device.py` builds and calls it.
+/// Trials of a CUDA device or its emulation, without Python; `tests/device.py` builds and runs this program.
 ///
-///     device_trial describe                        what the device is
-///     device_trial same STEPS WORLDS FILE          bits against the processor's, after steps in two pieces
-///     device_trial repeat STEPS WORLDS FILE        bits of the first world again, and among WORLDS of them
-///     device_trial resume STEPS FILE               from the device to the processor and back, by checkpoints
-///     device_trial first STEPS FILE                the first step after which bits differ, and which arrays do
-///     device_trial time SECONDS WORLDS FILE [N]    whole windows, N of them in a call, for about so long
+///     device_trial describe                        describes the device
+///     device_trial same STEPS WORLDS FILE          compares bits with the processor, after steps in two pieces
+///     device_trial repeat STEPS WORLDS FILE        compares the first world with a repeat, and among WORLDS
+///     device_trial resume STEPS FILE               goes from device to processor and back, by checkpoints
+///     device_trial first STEPS FILE                finds the first step after which bits differ, and the arrays
+///     device_trial time SECONDS WORLDS FILE [N]    times whole windows, N per call, for about SECONDS
 ///
-/// Each prints one object of JSON. Exit status 1 where bits differ or a world has a fault, 2 for what cannot be tried.
+/// Each prints one JSON object. Exit status 1 if bits differ or a world has a fault, 2 if the trial is impossible.
 #include <chrono>
 #include <cstring>
 
@@ -22,7 +22,7 @@ constexpr int MAX_WINDOWS = 16;
 
 double since(Clock::time_point begun) { return std::chrono::duration<double>(Clock::now() - begun).count(); }
 
-/// Advances; ends the program where the device fails.
+/// Advances; ends the program if the device fails.
 void advance(Simulation& simulation, int64_t steps) {
   simulation.run(steps);
   if (simulation.device_complaint().empty()) return;
@@ -36,7 +36,7 @@ std::unique_ptr<Simulation> on_device(const WorldInput& input, int64_t worlds) {
   return simulation;
 }
 
-/// Whether a world has no fault and these bits.
+/// Whether a world has no fault and this digest.
 bool sound(Simulation& simulation, int index, uint64_t digest) {
   return simulation.numbers(index).fault().status == Status::ok && simulation.digest(index) == digest;
 }
@@ -51,7 +51,7 @@ std::string fault_text(Simulation& simulation, int index) {
   return text;
 }
 
-/// Bytes as digits, the last one first, as in a number.
+/// Bytes as hexadecimal digits, last byte first, as in a number.
 std::string hex(const char* bytes, size_t count) {
   constexpr size_t MOST = 8;
   std::string text;
@@ -63,7 +63,7 @@ std::string hex(const char* bytes, size_t count) {
   return text;
 }
 
-/// Arrays of the state that differ, each with its first byte that does. Some are not valid where nobody lives.
+/// Arrays of the state that differ, each with its first item that does. Some are not valid in unused slots.
 std::string differing_arrays(const WorldState& here, const WorldState& there) {
   std::vector<std::pair<const char*, size_t>> arrays;
   for_each_array(here, "", [&]<class T>(const std::string&, const Array<T>& array) {
@@ -89,8 +89,8 @@ std::string differing_arrays(const WorldState& here, const WorldState& there) {
   return text;
 }
 
-/// Steps the same world here and there, and looks after every few steps; where bits differ, again from before on, after
-/// every step.
+/// Runs the same world on both backends and compares every few steps; if bits differ, runs again from the last equal
+/// state and compares after every step.
 int report_first(int64_t steps, const WorldInput& input) {
   constexpr int64_t FEW = 16;
   int64_t from = 0;
@@ -148,7 +148,7 @@ int report_repeat(int64_t steps, int64_t worlds, const WorldInput& input) {
   return repeated && among ? 0 : 1;
 }
 
-/// Three thirds: device, processor, device; against the processor alone.
+/// Three thirds, on the device, the processor and the device, compared with a run on the processor only.
 int report_resume(int64_t steps, const WorldInput& input) {
   const auto whole = make_worlds(input, 1, false);
   whole->run(3 * steps);

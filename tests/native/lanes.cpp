@@ -1,8 +1,8 @@
-/// A million random operations of one lane type, and of the processor's own floats, many at the border of denormal
-/// numbers: compares each with a reference and prints a hash per operation, which other machines must have, too.
+/// A million random operations of one lane type and of the processor's own floats, many at the border of denormal
+/// numbers: compares each with a reference and prints a hash per operation, which must be the same on all machines.
 ///
-/// Compile it with -DHEDON_LANES='"lanes/avx2.h"' and -DHEDON_FUSES=1 (0 for the portable ones). Exit status 1 and a
-/// sentence where a result is wrong.
+/// Compile it with -DHEDON_LANES='"lanes/avx2.h"' and -DHEDON_FUSES=1 (0 for portable lanes). If a result is wrong,
+/// exits with status 1 and a message.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr uint32_t BLOCKS = 1 << 16;
 constexpr int WIDTH = 16;
-constexpr double SMALLEST = 0x1p-126;          ///< normal float
-constexpr double BELOW = SMALLEST - 0x1p-151;  ///< from here on, x86 rounds up to it before it flushes
+constexpr double SMALLEST = 0x1p-126;          ///< smallest normal float
+constexpr double BELOW = SMALLEST - 0x1p-151;  ///< from here on, x86 rounds up to SMALLEST before it flushes
 #if defined(__x86_64__)
 constexpr float BETWEEN = 0x1p-126f;  ///< what a result in between becomes
 #else
@@ -38,8 +38,8 @@ float from_bits(uint32_t bits) {
 uint32_t bits_of(float x) {
   uint32_t bits;
   memcpy(&bits, &x, sizeof bits);
-  if (x != x) return 0x7fc00000u;                                // sign and payload of a NaN are a machine's own
-  return (bits & 0x7f800000u) == 0 ? bits & 0x80000000u : bits;  // whoever reads a denormal number reads 0
+  if (x != x) return 0x7fc00000u;                                // sign and payload of a NaN depend on the machine
+  return (bits & 0x7f800000u) == 0 ? bits & 0x80000000u : bits;  // a denormal number is read as 0
 }
 /// As the processor reads it: a denormal number is 0.
 double read(float x) { return std::fabs(static_cast<double>(x)) < SMALLEST ? std::copysign(0.0, x) : x; }
@@ -57,7 +57,7 @@ struct Hash {
   exit(1);
 }
 
-/// A number with these exponents, of either sign.
+/// A number with an exponent in this range and either sign.
 float draw(uint32_t word, int lowest, int highest) {
   const uint32_t exponent = static_cast<uint32_t>(lowest + 127) + to_index(word << 9, uint32_t(highest - lowest + 1));
   return from_bits((word & 0x807fffffu) | exponent << 23);
@@ -113,7 +113,7 @@ void draw_block(uint32_t index, Block* a, Block* b, Block* c) {
   }
 }
 
-/// Whether x86 and ARM differ in the result that is exactly `x` + `rest`, with |rest| less than a unit of x.
+/// Whether x86 and ARM differ if the exact result is `x` + `rest`, with |rest| less than a unit of x.
 bool is_between(double x, double rest) {
   const double size = std::fabs(x), more = x < 0 ? -rest : rest;
   return (size > BELOW || (size == BELOW && more >= 0)) && (size < SMALLEST || (size == SMALLEST && more < 0));
@@ -126,7 +126,7 @@ bool is_between(float a, float b, float c) {
   return is_between(total, (product - (total - back)) + (other - back));
 }
 
-/// Hashes a result; where machines differ, compares it with what this one must have instead.
+/// Hashes a result; if machines differ, compares it with the value required on this one instead.
 void take(Hash* hash, const char* name, bool between, float found, float a, float b, float c, int64_t* differing) {
   if (!between) {
     hash->add(bits_of(found));
@@ -148,7 +148,7 @@ struct Operation {
   const char* name;
   Lanes (*lanes)(Lanes a, Lanes b, Lanes c);
   float (*one)(float a, float b, float c);  ///< the reference
-  int terms;                                ///< 2 or 3 if the result is a product of so many; else 0
+  int terms;                                ///< 2 or 3 if the result is a product or a fused multiply-add; otherwise 0
 };
 
 const Operation OPERATIONS[] = {
@@ -206,7 +206,7 @@ void try_operation(const Operation& operation) {
          static_cast<long long>(differing));
 }
 
-/// What gives no lanes: sums, bits of masks, indices, bytes.
+/// Operations that do not return lanes: sums, bits of masks, indices, bytes.
 void try_reductions() {
   Hash hash;
   for (uint32_t n = 0; n < BLOCKS; ++n) {
@@ -245,7 +245,7 @@ void try_reductions() {
   printf("reductions %016llx 0\n", static_cast<unsigned long long>(hash.value));
 }
 
-/// The processor's own floats and doubles, which the rules of a world compute with.
+/// The processor's own floats and doubles, with which the rules of a world are computed.
 void try_scalars() {
   Hash sums, quotients, roots, narrow, wide;
   int64_t differing = 0;
@@ -253,7 +253,7 @@ void try_scalars() {
     Block a, b, c;
     draw_block(n, &a, &b, &c);
     for (int i = 0; i < WIDTH; ++i) {
-      const volatile float x = a.at[i], y = b.at[i];  // volatile: the compiler must not compute it itself
+      const volatile float x = a.at[i], y = b.at[i];  // volatile: the compiler must not compute the results
       sums.add(bits_of(x + y));
       sums.add(bits_of(x - y));
       quotients.add(bits_of(x / y));

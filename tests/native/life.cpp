@@ -1,9 +1,9 @@
-/// Lives of worlds from texts, without Python, on any machine: prints the digest of each, one per line.
+/// Simulates worlds from text files, without Python, on any machine, and prints the digest of each, one per line.
 ///
-///     life kernels                                             the names of the kernels here, the best first
-///     life KERNEL THREADS STEPS flush|keep FILE...             "" as KERNEL is the best
+///     life kernels                                             the names of the kernels available here, best first
+///     life KERNEL THREADS STEPS flush|keep FILE...             the best kernel if KERNEL is ""
 ///
-/// The agents of an external species all do what those of the golden cases do (`tests/golden_case.py`).
+/// All agents of an external species take the action of the golden cases (`tests/golden_case.py`).
 #include <cstring>
 
 #include "base/float_mode.h"
@@ -25,7 +25,7 @@ void drive(Simulation& simulation) {
   }
 }
 
-/// Prints the digest of a life; returns whether it has no fault.
+/// Simulates a world and prints its digest; returns whether it has no fault.
 bool live(const std::string& file, const Kernel* kernel, int threads, int64_t steps, bool flush) {
   const WorldInput input = read_world(file, 1);
   Simulation simulation(input.config, input.walls, static_cast<int32_t>(input.outer_walls), {input.seed}, threads,

@@ -1,4 +1,4 @@
-// Bytes that nobody can predict, as Windows has them in bcryptprimitives.dll since 2009 and Wine since version 9.
+// Unpredictable bytes, as in bcryptprimitives.dll of Windows since 2009 and of Wine since version 9.
 #include <stddef.h>
 
 __declspec(dllimport) unsigned char SystemFunction036(void* bytes, unsigned long count);  // RtlGenRandom

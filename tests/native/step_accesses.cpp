@@ -1,16 +1,16 @@
-/// Counts how often the threads of an emulated block touch memory in a step of a world, and how long its longest way
+/// Counts how often the threads of an emulated block access memory in a step of a world, and how long its longest path
 /// is.
 ///
 ///     step_accesses WARM STEPS FILE
 ///
 /// The world runs WARM steps on the processor, then STEPS in the emulation. Between two barriers, a device waits for
-/// the thread with the longest way: its own accesses, where at each barrier, ballot or read of its tile it is set back
-/// to the longest way of the tile. A line for each barrier of the code: its address, and of the work before it, per
-/// step, how often it came, the longest way, the longest way if accesses of shared memory do not count, and the
-/// accesses of the thread with the most, of the thread with the second most, and of all threads.
+/// the thread with the longest path: a path counts the thread's own accesses, and each barrier, ballot or read of its
+/// tile sets it to the longest path of the tile. Each barrier in the code gets a line: its address and, for the work
+/// before it, per step, how often it occurred, the longest path, the longest path without accesses to shared memory,
+/// and the accesses of the thread with the most, of the thread with the second most, and of all threads.
 ///
-/// The emulation is compiled for the thread sanitizer, whose functions, called at each access, are those below; and the
-/// linker sends calls of what waits through `__wrap_…`. `tests/cuda_step.py` builds all of it.
+/// The emulation is compiled for the thread sanitizer, whose functions, called at each access, are defined below. The
+/// linker sends calls of functions that wait through `__wrap_…`. `tests/cuda_step.py` builds everything.
 #include <algorithm>
 #include <map>
 
@@ -29,9 +29,9 @@ constexpr int MOST_THREADS = 1024;
 bool counting = false;
 int arrived = 0;
 int arrived_of_tile[MOST_THREADS / hedon::TILE];
-int64_t way[MOST_THREADS];         ///< of each thread since the block's last barrier
-int64_t global_way[MOST_THREADS];  ///< without accesses of shared memory
-int64_t touched[MOST_THREADS];     ///< by itself
+int64_t way[MOST_THREADS];         ///< path of each thread since the block's last barrier
+int64_t global_way[MOST_THREADS];  ///< the same without accesses to shared memory
+int64_t touched[MOST_THREADS];     ///< accesses of each thread itself
 std::map<const void*, Work> before_barrier;
 
 void touch(const void* place) {
@@ -54,7 +54,7 @@ void close(Work& work, int threads) {
   std::fill_n(touched, threads, 0);
 }
 
-/// All threads of a tile wait for the one with the longest way.
+/// All threads of a tile wait for the one with the longest path.
 void meet_in_tile() {
   const int tile = hedon::thread_rank() / hedon::TILE;
   if (!counting || ++arrived_of_tile[tile] < hedon::TILE) return;

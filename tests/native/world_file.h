@@ -1,4 +1,4 @@
-/// Worlds from files with the text of `engine/web/input.h`, for programs without Python.
+/// Worlds from files in the format of `engine/web/input.h`, for programs without Python.
 #pragma once
 
 #include <cstdio>
@@ -13,14 +13,14 @@
 #include "simulation/simulation.h"
 #include "web/input.h"
 
-/// Of the library that the program is linked with: CUDA's, or the emulation's.
+/// The device program of the linked library: CUDA's or the emulation's.
 extern "C" const hedon::DeviceProgram* hedon_device();
 
 namespace hedon {
 
-inline constexpr int WORLD_THREADS = 4;  ///< of the processor: for two worlds, two teams of two
+inline constexpr int WORLD_THREADS = 4;  ///< on the processor: for two worlds, two teams of two
 
-/// Reads a file; ends the program with status 2 and a sentence where it is wrong.
+/// Reads a file; if it is invalid, exits with status 2 and a message.
 inline WorldInput read_world(const std::string& file, int64_t worlds) {
   std::ifstream stream(file);
   std::stringstream text;
@@ -34,7 +34,7 @@ inline WorldInput read_world(const std::string& file, int64_t worlds) {
   exit(2);
 }
 
-/// Worlds of consecutive seeds, on the devices or, with AVX2, on the processor.
+/// Worlds with consecutive seeds, on the devices or, with AVX2, on the processor.
 inline std::unique_ptr<Simulation> make_worlds(const WorldInput& input, int64_t worlds, bool on_device) {
   std::vector<uint64_t> seeds;
   for (int64_t i = 0; i < worlds; ++i) seeds.push_back(input.seed + static_cast<uint64_t>(i));
