@@ -94,7 +94,7 @@ def test_a_pipe_in_a_run_is_refused_instead_of_waited_for(run):
         hedon.open_run(run)
 
 
-def test_a_run_may_be_reached_by_a_link_to_its_folder(run, tmp_path):
+def test_a_run_may_be_reached_through_a_link_to_its_folder(run, tmp_path):
     (tmp_path / "latest").symlink_to(run)
     assert hedon.open_run(tmp_path / "latest").manifest.status == "finished"
     assert hedon.resume(tmp_path / "latest", 200, threads=1).status == "finished"

@@ -1,4 +1,4 @@
-"""The policy `fixed`: agents act by networks that never learn, either new ones or the networks of a run."""
+"""The policy `fixed`: agents act with networks that never learn, either new ones or the networks of a run."""
 
 import numpy as np
 import pytest
@@ -49,7 +49,7 @@ def test_networks_never_change_and_children_inherit_them():
     assert "params" in saved
     assert not {"updates", "first_moment", "observation"} & set(saved)
     assert {row.tobytes() for row in saved["params"]} <= {row.tobytes() for row in founders}
-    assert len(np.unique(world.view("action")[world.living, 0])) > 10  # they act, each by its own network
+    assert len(np.unique(world.view("action")[world.living, 0])) > 10  # they act, each with its own network
 
 
 def test_with_noise_networks_evolve_without_learning():
@@ -80,7 +80,7 @@ def test_threads_and_checkpoints_change_nothing(settings, saved_at):
     assert second.worlds[0].digest() == once.worlds[0].digest()
 
 
-def test_founders_act_by_the_networks_of_a_run(learned, tmp_path):
+def test_founders_act_with_the_networks_of_a_run(learned, tmp_path):
     config = load_config("baseline", overrides=BOTH)
     networks = networks_from(str(learned), config)
     assert list(networks.params) == ["fixed"]

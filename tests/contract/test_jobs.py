@@ -108,7 +108,7 @@ def test_each_world_has_a_thread_and_the_last_run_gets_the_rest(
     assert begun == shares
 
 
-def test_no_jobs_need_no_work() -> None:
+def test_an_empty_list_of_jobs_does_nothing() -> None:
     stream, display = printed_display([])
     with display:
         assert make_here([], 2, display) == {}

@@ -21,7 +21,7 @@ from hedon.record.reader import open_run
 
 KILLS = int(os.environ.get("HEDON_KILLS", "10"))
 DELAY = 0.6
-"""Longest delay before a signal: about what a run takes to start and do a few hundred steps [s]."""
+"""Longest delay before a signal: about the time a run takes to start and do a few hundred steps [s]."""
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Summaries, reports, sweeps and notebooks treat each species of a world separately if they differ."""
+"""Summaries, reports, sweeps and notebooks treat the species of a world separately if they differ."""
 
 import io
 import json

@@ -114,7 +114,7 @@ def draws(seed, agent, step):
     return fine_uniform(*words[:2]), fine_uniform(*words[2:])
 
 
-def test_agents_die_that_draw_less_than_plain_python_returns(file):
+def test_agents_that_draw_less_than_plain_python_returns_die(file):
     simulation = living(file, *QUICK, *CHILDLESS, "reward.memory=2", reward="noting", hazard="swamp")
     world = simulation.worlds[0]
     swamp = next(rule for rule in rules(simulation.config) if rule.use == "hazard")

@@ -77,7 +77,7 @@ def found(world, reach, of=None):
 
 @pytest.mark.parametrize(("of", "reach"), [(["*"], 40.0), (["odd"], 120.0), (["plain"], 1e4)])
 def test_a_query_finds_the_agents_nearby(file, of, reach):
-    """Only steps without births and deaths are compared, so the agents present had all the meals."""
+    """Only steps without births and deaths are compared, so all meals are those of the agents present."""
     settings = (*LIVELY, *ARENA, *PLENTY, "species.plain.body.radius=8", f'species.odd.reward.rule="{file}:copy"')
     names = ", ".join(f'"{name}"' for name in of)
     settings += ("species.odd.reward.memory=5", f"species.odd.neighbor.near={{of=[{names}], range={reach}}}")

@@ -78,7 +78,7 @@ def test_a_nan_weight_propagates(kernel: str):
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-def test_a_world_acts_by_its_own_weights_rounded(kernel: str):
+def test_a_world_acts_with_its_own_rounded_weights(kernel: str):
     simulation = make_simulation(*QUICK, "birth.kappa=0.01", backend=kernel)
     world = simulation.worlds[0]
     simulation.run(200)  # learners, newborns, and slots that were used before

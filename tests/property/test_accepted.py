@@ -104,7 +104,7 @@ def values(setting: Setting, value: Any) -> st.SearchStrategy[Any]:
 
 
 def _places(value: tuple[Any, ...]) -> list[tuple[int, ...]]:
-    """The places of numbers in nested lists."""
+    """The indices of numbers in nested lists."""
     found = []
     for i, item in enumerate(value):
         below = _places(item) if isinstance(item, tuple) else [()] if not isinstance(item, str) else []

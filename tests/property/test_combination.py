@@ -26,7 +26,7 @@ WORLDS = int(os.environ.get("HEDON_WORLDS", "0"))
 RECORDED = int(os.environ.get("HEDON_RECORDED", "4"))
 ONLY = os.environ.get("HEDON_WORLD")
 PARTS = 16 if WORLDS else 1
-"""Number of parts of many worlds, which several processes can try at once."""
+"""Number of parts into which many worlds are split, for several processes at once."""
 REPORTED = 20
 """One in this many recorded worlds gets a report with figures."""
 SHOWN = 3

@@ -1,4 +1,4 @@
-"""Damaged files of a run: whatever is truncated or changed, each command reads on or reports it in one sentence.
+"""Damaged files of a run: whatever is truncated or changed, each command carries on or reports it in one sentence.
 
 HEDON_DAMAGED=N damages N files for each command and kind of damage instead of the default number.
 """

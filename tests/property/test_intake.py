@@ -20,7 +20,7 @@ FIRST = 1_000_000
 """The first seed of the compared settings; lower seeds are for development."""
 SETTINGS = int(os.environ.get("HEDON_INTAKE", "4"))
 PARTS = 10 if SETTINGS > 100 else 1
-"""Number of parts of many settings, which several processes can compare at once."""
+"""Number of parts into which many settings are split, for several processes at once."""
 WORLDS = 6
 LEARNERS = 5
 """Agents learn in one of this many settings, which takes ten times as long."""
