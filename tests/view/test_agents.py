@@ -1,4 +1,4 @@
-"""The table of agents has the numbers of the records; its filter and a rectangle in the scatter pick out agents."""
+"""The table of agents matches the records; its filter, and a rectangle in the scatter plot, select agents."""
 
 import csv
 
@@ -22,7 +22,7 @@ COUNT = "document.querySelector('#agents-count').textContent"
 
 
 def living(folder, step):
-    """Everybody alive in a frame, with their life, in the order of ids."""
+    """All agents alive in a frame, with their life histories, ordered by id."""
     recorded = open_run(folder)
     frame = recorded.frames().filter(pl.col("step") == step).collect()
     names = recorded.agents()
@@ -54,7 +54,7 @@ def write(watched, text, count):
     watched.until(f"{COUNT}.startsWith('{count} ')")
 
 
-def test_the_table_has_the_living_of_the_records(table, run_folder):
+def test_the_table_lists_the_agents_alive_in_the_records(table, run_folder):
     rows = living(run_folder, STEP)
     table.until(f"{COUNT} === '{rows.height} agents alive.'")
     columns = [
@@ -86,7 +86,7 @@ def test_the_table_has_the_living_of_the_records(table, run_folder):
     assert shown == pytest.approx(rows.select(columns).to_numpy().astype(float), abs=6e-4)
 
 
-def test_a_header_sorts_and_a_second_click_turns_the_order(table, run_folder):
+def test_a_click_on_a_header_sorts_and_a_second_click_reverses_the_order(table, run_folder):
     rows = living(run_folder, STEP)
     for name, column in (("energy", "now"), ("w_poison", "w_poison"), ("meals", "meals")):  # meals have ties
         for order in ("descending", "ascending"):
@@ -169,7 +169,7 @@ WRONG = {
 }
 
 
-def test_a_wrong_filter_is_explained_and_picks_nobody_out(table):
+def test_an_invalid_filter_is_explained_and_selects_no_agent(table):
     for text, parts in WRONG.items():
         table.page.locator("#filter").fill(text)
         table.until(f"document.querySelector('#filter-problem').textContent.includes('{parts[0]}')")
@@ -197,7 +197,7 @@ def test_the_table_is_saved_in_its_order_with_every_digit(table, run_folder, tmp
         assert [float(row[name]) for row in saved] == pytest.approx(rows[column].to_list(), rel=1e-7)
 
 
-def test_species_have_a_column_and_words_in_the_filter(tmp_path, watch):
+def test_species_have_a_column_and_can_be_named_in_the_filter(tmp_path, watch):
     folder = record_species(tmp_path / "run", seeds=(1, 2))
     with serving(run_server(folder)) as server:
         watched = watch(f"{server.link}#world=1")
@@ -213,7 +213,7 @@ def test_species_have_a_column_and_words_in_the_filter(tmp_path, watch):
         assert watched.get(PICKED) == predators
         assert {row[1] for row in watched.get(ROWS)} == {"predator"}
         assert all(row[-1] != "NaN" for row in watched.get(ROWS))
-        # A predator has no weight of normal food: whether that is below 0 is not known, and neither is its opposite.
+        # A predator has no weight for normal food, so neither this comparison nor its negation is true.
         for text in ("species = predator and w_normal < 0", "species = predator and not w_normal < 0"):
             watched.page.locator("#filter").fill(text)
             watched.until("hedon.arena.picked.size === 0")
@@ -226,7 +226,7 @@ def test_species_have_a_column_and_words_in_the_filter(tmp_path, watch):
             watched.until(f"document.querySelector('#filter-problem').textContent.includes('{message}')")
 
 
-def test_of_many_agents_two_hundred_are_listed(watch):
+def test_at_most_two_hundred_agents_are_listed(watch):
     many = load_config("baseline", overrides=["population.capacity=300", "population.initial_count=230"])
     page = {"run": False, "worlds": [live_world(many, "many")]}
     with serving(Server({"page": lambda: page}, dict)) as server:
@@ -245,7 +245,7 @@ SCATTER = "document.querySelector('#scatter')"
 
 
 def drag(watched, *corners):
-    """Drags in the scatter plot, between corners in shares of its size."""
+    """Drags in the scatter plot between corners, which are fractions of its size."""
     watched.page.locator("#scatter").scroll_into_view_if_needed()
     box = watched.page.locator("#scatter").bounding_box()
     (x, y), *rest = [(box["x"] + box["width"] * x, box["y"] + box["height"] * y) for x, y in corners]
@@ -261,7 +261,7 @@ def test_a_rectangle_in_the_scatter_plot_picks_out_its_agents(table, run_folder)
     table.page.locator("#tab-plots").click()
     table.page.get_by_label("Gene along y").select_option(label="weight of action")
     genes = rows.select("w_normal", "w_action").to_numpy()
-    # The axes end where the page says: 8 % beyond all but one in fifty of the values.
+    # The axes end 8 % beyond the 98th percentile of the absolute values, as in the page.
     sizes = np.sort(np.abs(genes).ravel())
     limit = 1.08 * sizes[int(0.98 * len(sizes))]
     table.until(
@@ -282,7 +282,7 @@ def test_a_rectangle_in_the_scatter_plot_picks_out_its_agents(table, run_folder)
     assert sorted(int(row[0]) for row in table.get(ROWS)) == table.get(PICKED)
     area = table.page.locator("#agents-area").inner_text()
     assert area.startswith("In the rectangle of the scatter plot: w_normal \N{MINUS SIGN}")
-    wanted = rows.filter(pl.Series(picked) & (pl.col("age") > 500))["agent_id"].to_list()  # both at once
+    wanted = rows.filter(pl.Series(picked) & (pl.col("age") > 500))["agent_id"].to_list()  # filter and rectangle
     write(table, "age > 500", len(wanted))
     assert table.get(PICKED) == wanted
     table.page.locator("#filter").fill("")
@@ -298,12 +298,12 @@ def test_a_click_or_other_axes_remove_the_rectangle(table):
         lambda: table.page.get_by_label("Gene along x").select_option(label="weight of poison"),
     ):
         drag(table, (0.01, 0.01), (0.99, 0.99))
-        table.until("hedon.arena.picked.size === hedon.frame.id.length")  # also those beyond the axes
+        table.until("hedon.arena.picked.size === hedon.frame.id.length")  # including those beyond the axes
         remove()
         table.until("hedon.arena.picked.size === 0")
 
 
-def test_at_most_twenty_that_are_picked_out_have_trails_and_rays(table):
+def test_at_most_twenty_selected_agents_have_trails_and_rays(table):
     lines = "hedon.arena.scene.lines.count"
     before = table.get(lines)
     write(table, "id >= 0", table.get("hedon.frame.id.length"))
@@ -313,7 +313,7 @@ def test_at_most_twenty_that_are_picked_out_have_trails_and_rays(table):
     table.until(f"{lines} === {before}")
     table.page.keyboard.press("Escape")
     table.get("hedon.seek(2048)")
-    table.until(f"hedon.frame.step === 2048 && {lines} > {before}")  # a line from place to place
+    table.until(f"hedon.frame.step === 2048 && {lines} > {before}")  # a line between positions
     assert table.get(lines) <= before + 2 * 20
     table.page.locator("#show-trail").click()
     table.until(f"{lines} === {before}")

@@ -1,4 +1,4 @@
-"""The page in a real browser: what it shows is what the records and the engine say."""
+"""The page in a real browser shows what the records and the engine contain."""
 
 import io
 import json
@@ -31,12 +31,12 @@ def agents_at(folder, step):
 
 
 def pixels_of(watched):
-    watched.get("(document.querySelector('#look').hidden = true)")  # its buttons lie over the arena
+    watched.get("(document.querySelector('#look').hidden = true)")  # its buttons cover part of the arena
     return imread(io.BytesIO(watched.page.locator("#scene").screenshot()))[:, :, :3]
 
 
 def on_canvas(watched, x, y):
-    """Pixels of the canvas of places in the arena: the whole arena, as large as fits, with a rim of 2 % all around."""
+    """Canvas pixels of positions in the arena, which is shown whole, as large as fits, with a 2 % margin."""
     arena = load_config("poison").arena
     box = watched.page.locator("#scene").bounding_box()
     zoom = 0.96 * min(box["width"] / arena.width, box["height"] / arena.height)
@@ -45,7 +45,7 @@ def on_canvas(watched, x, y):
     return left, top, zoom
 
 
-def test_agents_and_foods_are_drawn_where_the_records_have_them(run_folder, watch):
+def test_agents_and_food_are_drawn_at_their_recorded_positions(run_folder, watch):
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link)
         watched.rest_at(STEP)
@@ -61,7 +61,7 @@ def test_agents_and_foods_are_drawn_where_the_records_have_them(run_folder, watc
             axis=0,
         )
         painted = np.abs(image - ground).max(axis=2) > 0.02
-        # The white rim of a mouth may be as pale as the ground, so the inner part of each body is compared.
+        # The white rim of a mouth may be as pale as the background, so only the inner part of each body is compared.
         assert painted[distance < -0.25 * radius.max()].mean() > 0.999
         inside = (columns > left.min()) & (columns < left.max()) & (rows_of > top.min()) & (rows_of < top.max())
         assert painted[(distance > 3) & inside].mean() < 0.001
@@ -132,7 +132,7 @@ def test_a_live_world_has_the_digest_of_the_native_one(preset, steps, watch):
         check_digest(watched, preset, steps)
 
 
-def test_the_link_says_how_many_threads_a_live_world_has(watch):
+def test_the_link_sets_the_number_of_threads_of_a_live_world(watch):
     with serving(live_server("small")) as server:
         watched = watch(f"{server.link}#threads=3")
         run_live(watched, 300)
@@ -150,14 +150,14 @@ def test_a_chosen_agent_of_a_live_world_shows_its_network(watch):
 
 
 def shown_pairs(watched):
-    """The tables of the agent's panel: what stands beside what, in order."""
+    """The rows of the tables in the agent panel, in order."""
     return watched.get(
         "[...document.querySelectorAll('#agent tr')].map((row) => [...row.children].map((cell) => cell.innerText))"
     )
 
 
 def shown_rows(watched):
-    """The same by what stands first; the last row of a name."""
+    """The same rows by their first cell; of rows with the same first cell, the last."""
     return dict(shown_pairs(watched))
 
 
@@ -241,7 +241,7 @@ def test_rays_are_drawn_as_the_engine_casts_them(preset, watch):
             for r, ray in enumerate(drawn):
                 assert (ray["type"] >= 0) == (reading[r] > 0)
                 if ray["type"] >= 0:
-                    # A reading is 2 minus the share of the ray's length; float32 in the engine, double in the page.
+                    # A reading is 2 minus the fraction of the ray's length; float32 in the engine, double in the page.
                     assert ray["share"] == pytest.approx(2 - reading[r], abs=2e-4)
                     assert ray["type"] == types[r]
                     seen += 1
@@ -252,7 +252,7 @@ def test_rays_are_drawn_as_the_engine_casts_them(preset, watch):
     ("path", "value"),
     [("food.normal.gives.energy", "1000000"), ("population.capacity", "1.5"), ("energy.initial", "many")],
 )
-def test_a_setting_is_refused_in_the_words_of_the_command(path, value, watch):
+def test_a_setting_is_refused_with_the_message_of_the_command(path, value, watch):
     given = value if value != "many" else f'"{value}"'
     with pytest.raises(ConfigError) as refused:
         load_config("poison", overrides=[f"{path}={given}"])
@@ -284,7 +284,7 @@ def test_a_changed_setting_makes_the_world_that_the_command_makes(watch):
         assert watched.get("hedon.source.digest()") == simulation.worlds[0].digest()
 
 
-def test_a_run_that_goes_on_is_followed(run_folder, tmp_path, watch):
+def test_a_run_that_continues_is_followed(run_folder, tmp_path, watch):
     folder = record(tmp_path / "growing", 1024)
     manifest = json.loads((folder / "manifest.json").read_text())
     (folder / "manifest.json").write_text(json.dumps(manifest | {"status": "running"}))
@@ -325,7 +325,7 @@ def test_an_exported_site_works_from_any_server(run_folder, tmp_path, watch):
         assert watched.get("Array.from(hedon.frame.id)") == agents_at(run_folder, STEP)["id"].to_list()
 
 
-def test_a_live_world_has_one_thread_where_the_page_is_not_isolated(tmp_path, watch):
+def test_a_live_world_has_one_thread_if_the_page_is_not_isolated(tmp_path, watch):
     page = {"run": False, "worlds": [live_world(load_config("small"), "small")]}
     export(tmp_path / "site", {"page": page}, {})
     with plain_server(tmp_path / "site") as link:

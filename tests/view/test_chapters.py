@@ -1,4 +1,4 @@
-"""What the time line marks is a list of chapters, each of which leads to its moment; sparse records play fast."""
+"""The marks of the timeline are listed as chapters, each of which leads to its moment; sparse records play fast."""
 
 from typing import Any
 
@@ -37,7 +37,7 @@ def test_a_chapter_leads_to_its_moment(width, watch):
         watched.until(f"{LIST}.selectedIndex === {sum(step <= first for step in steps)}")
 
 
-def test_a_live_world_has_none(watch):
+def test_a_live_world_has_no_chapters(watch):
     with serving(live_server("baseline")) as server:
         watched = watch(server.link)
         assert watched.get(f"{LIST}.hidden")
@@ -48,4 +48,4 @@ def test_sparse_records_play_several_moments_a_second(run_folder, watch):
         assert watch(dense.link).get("[hedon.speed, hedon.source.spacing]") == [4, 64]
         speed, spacing = watch(link_of(sparse)).get("[hedon.speed, hedon.source.spacing]")
         assert spacing >= 1024
-        assert 12 <= spacing / speed <= 32, "pictures, of which a second has sixty"
+        assert 12 <= spacing / speed <= 32, "pictures per recorded moment, at sixty pictures a second"

@@ -1,4 +1,4 @@
-"""Every color stands out from both grounds, means one thing everywhere, and keeps its meaning while time goes on."""
+"""Every color stands out from both backgrounds, means the same everywhere, and keeps its meaning as time passes."""
 
 import io
 
@@ -59,7 +59,7 @@ def test_the_page_has_the_colors_of_the_figures(preset):
     assert {gene["name"]: gene["color"] for gene in layout["genes"]} == weight_colors(names, meals)
 
 
-def test_kinds_of_food_that_ask_for_one_color_get_two():
+def test_kinds_of_food_that_ask_for_the_same_color_get_different_ones():
     assert food_colors(["a", "b", "c"], ["#3f8f4f"] * 3) == {"a": "#3f8f4f", "b": "#b07d1a", "c": "#8e44ad"}
     assert food_colors(["a", "b"], ["#123456", "#abcdef"]) == {"a": "#123456", "b": "#abcdef"}
 
@@ -76,7 +76,7 @@ def pixels(watched):
 
 @pytest.mark.parametrize("ground", ["dark", pytest.param("light", marks=pytest.mark.long)])
 def test_agents_stand_out_whatever_they_are_colored_by(ground, run_folder, watch):
-    """At the middle of each body, beside the eye."""
+    """Measured at the middle of each body, next to the eye."""
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link, color_scheme=ground)
         watched.until("hedon.source.lives.size > 0")
@@ -89,13 +89,13 @@ def test_agents_stand_out_whatever_they_are_colored_by(ground, run_folder, watch
             middle = image[places[:, 1], places[:, 0]]
             assert len(middle) > 40
             least = contrast(middle, image[3, 3])
-            hollow = np.abs(middle - image[3, 3]).max(axis=1) < 0.02  # nothing is known of it: it has a rim
+            hollow = np.abs(middle - image[3, 3]).max(axis=1) < 0.02  # nothing is known about it: only a rim
             assert hollow.sum() == 0 or name == "eats"
             assert least[~hollow].min() >= LEAST - 0.05, name
 
 
 def test_one_mutant_changes_no_other_color(run_folder, watch):
-    """A gene a hundred times as large as all others: the scale is that of nearly all lives."""
+    """A gene a hundred times as large as all others does not change the scale, which fits nearly all lives."""
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link)
         watched.until("hedon.source.lives.size > 0")
@@ -109,7 +109,7 @@ def test_one_mutant_changes_no_other_color(run_folder, watch):
         assert list(np.flatnonzero(~same)) == [3]
 
 
-def test_a_scale_stays_as_it_is_while_time_goes_on(run_folder, watch):
+def test_a_scale_stays_the_same_as_time_passes(run_folder, watch):
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link)
         watched.until("hedon.source.lives.size > 0 && hedon.source.series.step.length > 1")

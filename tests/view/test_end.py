@@ -25,7 +25,7 @@ def test_play_at_the_end_begins_again(run_folder, watch):
 
 @pytest.fixture
 def doomed(watch):
-    """A live world in which all starve within some steps."""
+    """A live world in which all agents starve within a few steps."""
     settings = ["energy.basic_cost=5", "food.normal.initial_count=0", "food.normal.growth_rate=0", "hazard.kappa=0.5"]
     page = {"run": False, "worlds": [live_world(load_config("small", overrides=settings), "small")]}
     with serving(Server({"page": lambda: page}, dict)) as server:
@@ -34,7 +34,7 @@ def doomed(watch):
         yield watched
 
 
-def test_an_extinct_world_can_be_looked_at_and_begun_again(doomed):
+def test_an_extinct_world_can_be_looked_back_at_and_restarted(doomed):
     doomed.until("!document.querySelector('#notice').hidden")
     last = doomed.get("hedon.source.last")
     notice = doomed.page.locator("#notice")
@@ -49,7 +49,7 @@ def test_an_extinct_world_can_be_looked_at_and_begun_again(doomed):
     doomed.until("hedon.source.seed === 2 && hedon.frame && document.querySelector('#notice').hidden")
 
 
-def test_lost_graphics_are_told_and_come_back(run_folder, watch):
+def test_lost_graphics_are_reported_and_restored(run_folder, watch):
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link)
         watched.rest_at(640)

@@ -1,4 +1,4 @@
-"""The gallery: places of the article with a picture and a sentence. `HEDON_PICTURES=1` makes its pages and pictures."""
+"""The gallery: places in the article, each with a picture and a sentence. `HEDON_PICTURES=1` writes them."""
 
 import csv
 import os
@@ -31,7 +31,7 @@ the article's address. You get the same world, bit for bit. A test writes this p
 
 @dataclass(frozen=True)
 class Place:
-    """A place: its scene, the file of its config, the step, what differs, and what one sees there."""
+    """A place: its scene, config file and step, the settings that differ, and what you see there."""
 
     scene: str
     file: str
@@ -96,7 +96,7 @@ PLACES = {
 
 
 def addresses() -> dict[str, str]:
-    """The address of each place, by name, as the gallery has it."""
+    """The address of each place in the gallery, by name."""
     lines = (GALLERY / "README.md").read_text().split("\n")
     return dict(zip(PLACES, [line.strip("`") for line in lines if line.startswith("`#")], strict=True))
 
@@ -105,7 +105,7 @@ def addresses() -> dict[str, str]:
     not {"avx2", "avx512"} & set(_engine.kernel.kernel_names()), reason="this processor does not fuse multiply-adds"
 )
 @pytest.mark.long
-def test_the_gallery_has_the_bits_of_the_engine():
+def test_the_gallery_matches_the_engine_bit_for_bit():
     def section(name: str, place: Place) -> str:
         shown = f"![{place.title}]({name}.png)\n\n{place.sentence}"
         return f"\n## {place.title}\n\n{shown}\n\n`{place.address(place.digest())}`\n"
@@ -113,7 +113,7 @@ def test_the_gallery_has_the_bits_of_the_engine():
     made = HEAD + "".join(section(*each) for each in PLACES.items())
     if PICTURES:
         (GALLERY / "README.md").write_text(made)
-    assert (GALLERY / "README.md").read_text() == made, "a world is another now: take the pictures again"
+    assert (GALLERY / "README.md").read_text() == made, "a world has changed: take the pictures again"
 
 
 @pytest.fixture(scope="module")
@@ -152,8 +152,8 @@ def test_the_exercises_have_places_that_exist_and_a_data_sheet():
     assert {"meals_first_rounds", "meals_last_rounds", "pace_first", "pace_last", "parent_meal_feels"} <= set(rows[0])
 
 
-def test_the_exercises_name_what_the_article_has():
-    """Sliders and buttons are in italics; a pair must find them."""
+def test_the_exercises_name_only_controls_that_the_article_has():
+    """Sliders and buttons are in italics; each pair of students must be able to find them."""
     scenes = [STORY / f"{name}.html" for name in ("creature", "learning", "family", "evolve", "contest")]
     page = "".join(path.read_text() for path in (*scenes, STORY.parent.parent / "story.html"))
     buttons = set(re.findall(r"<button[^>]*>([^<]+)", page))
@@ -170,16 +170,16 @@ def test_the_exercises_name_what_the_article_has():
 
 
 def test_the_second_exercise_shows_what_a_child_inherits():
-    """Feelings are those of the parents; a new network starts without what another one learned."""
+    """Children inherit their parents' feelings; a new network starts without anything another one has learned."""
     world = Simulation(load_config(SCENES / "family.toml"), seeds=[1])
-    lives = {}  # parent and feeling, also of the dead
+    lives = {}  # parent and feeling of every agent, including the dead
     for _ in range(2000):
         world.run(1)
         agents = world.worlds[0].agents()
         columns = (agents["agent_id"], agents["parent_id"], agents["genome"][:, 0])
         lives |= {own: rest for own, *rest in zip(*(each.tolist() for each in columns), strict=True)}
     alive = [lives[own] for own in agents["agent_id"].tolist() if lives[own][0] >= 0]
-    assert len(alive) > 20, "a class has enough of them"
+    assert len(alive) > 20, "enough for a class"
     feeling = np.corrcoef([(own, lives[parent][1]) for parent, own in alive], rowvar=False)[0, 1]
     text = " ".join((TEACHING / "README.md").read_text().split())
     assert f"Over the {len(alive)} children" in text
@@ -192,7 +192,7 @@ def test_the_second_exercise_shows_what_a_child_inherits():
 
 
 def meals_of_rounds(seed: int, rounds: int = 80) -> tuple[int, int]:
-    """Meals of the learner of scene 2 in its first five rounds and in its last five."""
+    """Meals that the learner in scene 2 eats in its first five rounds and in its last five."""
     world = Simulation(load_config(SCENES / "learning.toml"), seeds=[seed])
     eaten = [0]
     for _ in range(rounds):

@@ -1,4 +1,4 @@
-"""Two fingers move and zoom the view at once, and the place under them stays there."""
+"""Two fingers move and zoom the view at once, and the point between them stays between them."""
 
 import pytest
 from view_page import run_server, serving, sized
@@ -32,7 +32,7 @@ def test_a_pinch_zooms_about_its_middle(watched):
     watched.until(f"hedon.arena.scene.zoom > 1.98 * {zoom}")
     assert watched.get("hedon.arena.scene.zoom") == pytest.approx(2 * zoom, rel=0.02)
     assert watched.get(f"hedon.arena.scene.toWorld({x}, {y})") == pytest.approx(before, abs=1.5)
-    touch(watched, "touchEnd", (x + 60, y))  # one finger stays, and goes on to drag
+    touch(watched, "touchEnd", (x + 60, y))  # one finger stays down and keeps dragging
     touch(watched, "touchEnd")
     assert watched.get(f"hedon.arena.scene.toWorld({x}, {y})") == pytest.approx(before, abs=1.5)
     assert watched.get("hedon.chosen") == -1
@@ -50,7 +50,7 @@ def test_a_drag_moves_the_world_with_the_finger(watched):
 
 
 @pytest.mark.long
-def test_a_view_stays_through_another_size_and_a_reload(watched):
+def test_a_view_survives_a_resize_and_a_reload(watched):
     watched.get("hedon.arena.look(hedon.source, [240, 180, 3])")
     watched.get("hedon.viewed()")
     watched.page.set_viewport_size({"width": 600, "height": 844})

@@ -1,4 +1,4 @@
-"""Maps over the arena count where agents were, as the records have it, and where they ate, as the engine does it."""
+"""Maps of the arena count where agents were, as in the records, and where they ate, as in the engine."""
 
 import numpy as np
 import polars as pl
@@ -16,7 +16,7 @@ DONE = "!hedon.heat.reading && hedon.heat.moments"
 
 
 def counted(x, y, arena):
-    """How many places are in each square, in rows from below, as the page has them."""
+    """The number of positions in each square, in rows from the bottom, as in the page."""
     width, height = arena
     size = max(width, height) / CELLS
     columns, rows = int(np.ceil(width / size)), int(np.ceil(height / size))
@@ -56,7 +56,7 @@ def test_a_run_shows_where_agents_were_at_all_recorded_moments(kind, run_folder,
 
 
 def test_a_live_world_shows_where_its_agents_ate_and_were(watch):
-    """Against the same world in Python, step by step; the page sees only some of the moments between."""
+    """Compared with the same world in Python, step by step; the page itself sees only some of the steps."""
     with serving(live_server("small")) as server:
         watched = watch(server.link)
         run_live(watched, 400)

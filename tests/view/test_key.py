@@ -1,4 +1,4 @@
-"""Keys and buttons do what they say, and leave to lists, buttons and tabs the keys that are theirs."""
+"""Keys and buttons do what they say, and lists, buttons and tabs keep their own keys."""
 
 import pytest
 from view_page import run_server, serving
@@ -14,7 +14,7 @@ def watched(run_folder, watch):
         yield page
 
 
-def test_shift_and_an_arrow_go_ten_frames(watched):
+def test_shift_and_an_arrow_move_by_ten_frames(watched):
     watched.page.keyboard.press("Shift+ArrowRight")
     watched.until("hedon.frame.step === 640 + 10 * 64")
     watched.page.keyboard.press("Shift+ArrowLeft")
@@ -32,7 +32,7 @@ def test_escape_closes_the_help_and_keeps_the_agent(watched):
     assert watched.get("[hedon.chosen >= 0, hedon.playing]") == [True, False]
 
 
-def test_the_space_bar_opens_a_group_of_settings_and_the_world_stays(watched):
+def test_the_space_bar_opens_a_group_of_settings_and_does_not_pause_the_world(watched):
     watched.page.locator("#world").select_option("live 0")
     watched.until("hedon.source.live && hedon.frame && hedon.playing")
     watched.get("hedon.tab('settings')")
@@ -58,7 +58,7 @@ def test_arrows_go_from_tab_to_tab_and_not_through_time(watched):
 
 
 def test_the_tab_key_reaches_every_control(watched):
-    """By keys alone: what can be clicked can be focused, and the focus is seen."""
+    """With the keyboard only: whatever can be clicked can be focused, and the focus is visible."""
     bars = "[...document.querySelectorAll('header *, footer *, #look *')]"
     wanted = set(
         watched.get(f"{bars}.filter((each) => each.tabIndex >= 0 && each.offsetParent).map((each) => each.id)")
@@ -70,7 +70,7 @@ def test_the_tab_key_reaches_every_control(watched):
         name, outline = watched.get(
             "[document.activeElement.id, getComputedStyle(document.activeElement).outlineStyle]"
         )
-        assert name == "" or outline != "none"  # after the last one comes the page itself
+        assert name == "" or outline != "none"  # after the last control, the page itself has the focus
         reached.add(name)
     assert wanted <= reached
 

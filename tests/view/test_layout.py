@@ -1,4 +1,4 @@
-"""What the page is told about a world: its layout, its settings, and the text that the engine reads."""
+"""What the page receives about a world: its layout, its settings, and the text that the engine reads."""
 
 import json
 
@@ -46,7 +46,7 @@ def test_the_layout_names_everything_that_records_and_senses_have(preset):
 @pytest.mark.parametrize(
     ("changes", "rest"), [({"family": "sinh"}, ["normal", "poison", "action"]), ({"rule": "my_rules.py:pay"}, [])]
 )
-def test_meals_tell_of_a_reward_only_where_it_is_linear_in_them(changes, rest):
+def test_meals_are_listed_for_a_reward_only_if_it_is_linear_in_them(changes, rest):
     config = load_config("poison")
     for name, value in changes.items():
         config = config.with_(f"reward.{name}", value)
@@ -54,7 +54,7 @@ def test_meals_tell_of_a_reward_only_where_it_is_linear_in_them(changes, rest):
 
 
 @pytest.mark.parametrize("preset", PRESETS)
-def test_each_setting_leads_to_the_engine_value_that_it_has(preset):
+def test_each_setting_leads_to_its_value_in_the_engine(preset):
     config = load_config(preset)
     world = live_world(config, preset)
     engine = dict(line.split("=", 1) for line in engine_text(config, 1).splitlines())
@@ -66,7 +66,7 @@ def test_each_setting_leads_to_the_engine_value_that_it_has(preset):
 
 
 def test_a_changed_setting_changes_only_its_line_of_the_text():
-    """What the page does to the text by itself is what the command's config gives."""
+    """The page edits the text by itself, so the result must match the command's config."""
     for setting in live_world(load_config("poison"), "poison")["settings"]:
         if setting["path"] not in ("food.poison.gives.energy", "food.poison.gene.initial_sd", "energy.initial"):
             continue

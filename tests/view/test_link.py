@@ -14,13 +14,13 @@ def test_the_link_of_a_live_world_gives_the_same_moment(browser, watch):
     with serving(live_server("small")) as server:
         first = watch(f"{server.link}#live=small&seed=5&set=energy.basic_cost%3D0.03")
         run_live(first, 300)
-        steps = first.get("hedon.source.last")  # more than 300 where the page was quicker than the test
+        steps = first.get("hedon.source.last")  # more than 300 if the page was faster than the test
         first.get("hedon.seek(hedon.source.last)")
         first.get("hedon.choose(hedon.frame.id[4])")
         first.page.locator("#color").select_option("w_normal")
         first.get("(hedon.arena.look(hedon.source, [100, 90, 2]), hedon.viewed())")
         link, digest = first.get("[location.href, hedon.source.digest()]")
-        second = watch(link)  # in a browser context of its own
+        second = watch(link)  # in a separate browser context
         second.until("hedon.source.digest() !== '' && hedon.chosen >= 0")
         same = second.get("[hedon.source.last, hedon.source.seed, hedon.chosen, hedon.source.digest()]")
         assert same == [steps, 5, first.get("hedon.chosen"), digest]

@@ -1,4 +1,4 @@
-"""What a person does with a live world in the page: by hand, to a snapshot and back, into files, at any speed."""
+"""What you can do with a live world in the page: edit it, return to a snapshot, save files, and run at any speed."""
 
 import polars as pl
 import pytest
@@ -17,7 +17,7 @@ def server():
 
 @pytest.fixture
 def world(server, watch):
-    """A page with a world that rests at step 200, or later where the page was quicker than the test."""
+    """A page with a world paused at step 200, or later if the page was faster than the test."""
     watched = watch(server.link)
     rest(watched, 200)
     watched.get("hedon.tab('world-panel')")
@@ -65,7 +65,7 @@ def download(watched, button):
 
 
 @pytest.mark.parametrize(("choice", "count"), [("0", "frame.id.length"), ("1", "frame.foodX.length")])
-def test_what_is_added_by_hand_is_there_and_can_be_removed(world, choice, count):
+def test_agents_and_food_can_be_added_and_removed_by_hand(world, choice, count):
     place = free_place(world, 24)
     before = world.get(f"hedon.{count}")
     world.page.locator("#edit").select_option(choice)
@@ -84,7 +84,7 @@ def test_what_is_added_by_hand_is_there_and_can_be_removed(world, choice, count)
     assert world.get("hedon.source.error") == ""
 
 
-def test_a_world_goes_back_to_its_snapshot_and_on_with_the_same_digest(world):
+def test_a_world_returns_to_its_snapshot_and_continues_with_the_same_digest(world):
     assert world.page.locator("#back").is_disabled()
     begun = world.get("hedon.source.last")
     world.page.locator("#keep").click()
@@ -103,7 +103,7 @@ def test_a_world_goes_back_to_its_snapshot_and_on_with_the_same_digest(world):
     assert world.get("hedon.source.digest()") == native(world, 700).digest()
 
 
-def test_the_records_of_the_page_are_those_of_the_native_world(world):
+def test_the_records_of_the_page_match_those_of_the_native_world(world):
     rest(world, 900)
     same = native(world, 900)
     living = pl.read_csv(download(world, "#save-living").path())
@@ -139,7 +139,7 @@ def test_the_config_of_the_page_makes_the_same_world(server, watch):
     assert watched.get("hedon.source.digest()") == simulation.worlds[0].digest()
 
 
-def test_the_config_of_a_world_from_a_file_is_whole(tmp_path, watch):
+def test_the_config_of_a_world_from_a_file_is_complete(tmp_path, watch):
     file = tmp_path / "mushrooms.toml"
     file.write_text('preset = "small"\n[food.mushroom]\ngives.energy = 3.0\ninitial_count = 5\ncapacity = 20\n')
     with serving(live_server(str(file))) as server:
@@ -188,7 +188,7 @@ def test_two_worlds_of_one_seed_stay_in_step_and_differ_by_one_setting(world):
     lasts = "[hedon.source.last, hedon.twin.live.last]"
     world.until("!hedon.source.busy && !hedon.twin.live.busy && hedon.source.digest() && hedon.twin.live.digest()")
     first, second = world.get(lasts)
-    assert abs(first - second) <= 4  # one of them may have done its part of the next picture
+    assert abs(first - second) <= 4  # one of them may already have run its steps for the next picture
     kernel = "" if world.get("hedon.source.fused") else "portable"
     for changes, name, steps in (([], "source", first), (["energy.basic_cost=0.05"], "twin.live", second)):
         simulation = Simulation(load_config("small", overrides=changes), seeds=[1], backend=kernel)

@@ -1,4 +1,4 @@
-"""The tree of the living on the page is the pedigree of the records, at every moment, and shows who bears a branch."""
+"""The page's tree of living agents is the recorded pedigree at every moment, and shows who belongs to a branch."""
 
 import polars as pl
 import pytest
@@ -29,7 +29,7 @@ def opened(watch, server, step: int):
 
 
 def pedigree(folder, step: int) -> tuple[dict[int, int], set[int]]:
-    """The parents of all that were born by a step, and who lives then."""
+    """The parents of all agents born up to a step, and the agents alive at it."""
     born = open_run(folder).agents().filter(pl.col("birth_step") <= step)
     living = born.filter(pl.col("death_step").is_null() | (pl.col("death_step") > step))
     parents = dict(zip(born["agent_id"], born["parent_id"].fill_null(-1), strict=True))
@@ -37,7 +37,7 @@ def pedigree(folder, step: int) -> tuple[dict[int, int], set[int]]:
 
 
 def below(parents: dict[int, int], living: set[int], branch: int) -> list[int]:
-    """Who of the living descends from an agent, itself among them."""
+    """The living agents that descend from an agent, including the agent itself."""
 
     def descends(agent: int) -> bool:
         while agent >= 0 and agent != branch:
@@ -48,7 +48,7 @@ def below(parents: dict[int, int], living: set[int], branch: int) -> list[int]:
 
 
 @pytest.mark.parametrize("step", [pytest.param(512, marks=pytest.mark.long), 2048])
-def test_the_tree_is_the_pedigree_of_those_who_live(step, watch, replay, run_folder):
+def test_the_tree_is_the_pedigree_of_the_living_agents(step, watch, replay, run_folder):
     parents, living = pedigree(run_folder, step)
     watched = opened(watch, replay, step)
     watched.until(f"[...hedon.frame.id].length === {len(living)} && {TREE}.branches.some((b) => b.end === {step})")
@@ -59,13 +59,13 @@ def test_the_tree_is_the_pedigree_of_those_who_live(step, watch, replay, run_fol
             wanted.add(agent)
             agent = parents[agent]
     assert set(lines) == wanted
-    assert sorted(lines[agent][0] for agent in living) == list(range(len(living))), "each has a row of its own"
+    assert sorted(lines[agent][0] for agent in living) == list(range(len(living))), "each has its own row"
     for agent, (_, end, children) in lines.items():
         assert (end == step) == (agent in living)
         assert sorted(children) == sorted(child for child in wanted if parents[child] == agent)
 
 
-def test_a_click_on_a_branch_rings_who_bears_it(watch, replay, run_folder):
+def test_a_click_on_a_branch_rings_its_living_agents(watch, replay, run_folder):
     parents, living = pedigree(run_folder, 2048)
     watched = opened(watch, replay, 2048)
     branch = max(parents, key=lambda agent: (parents[agent] < 0) * len(below(parents, living, agent)))
@@ -81,9 +81,9 @@ def test_a_click_on_a_branch_rings_who_bears_it(watch, replay, run_folder):
         f"{len(family)} agents of {len(living)}"
     )
     watched.until("document.getElementById('legend').innerText.includes('of the chosen branch')")
-    watched.rest_at(1024)  # the branch stays, and who bears it is who lived then
+    watched.rest_at(1024)  # the branch stays chosen, and its agents are those alive at that step
     watched.until(f"{RINGED}.join() === '{','.join(map(str, below(*pedigree(run_folder, 1024), branch)))}'")
-    watched.get("hedon.tab('plots')")  # also where the tree is not seen
+    watched.get("hedon.tab('plots')")  # also while the tree is hidden
     watched.rest_at(1536)
     watched.until(f"{RINGED}.join() === '{','.join(map(str, below(*pedigree(run_folder, 1536), branch)))}'")
     watched.get("hedon.tab('tree')")

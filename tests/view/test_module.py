@@ -1,4 +1,4 @@
-"""The WebAssembly of the engine against the native one: the same bits, from the same config."""
+"""The WebAssembly engine and the native engine give the same bits from the same config."""
 
 import json
 import re
@@ -24,7 +24,7 @@ MODULES = [
     ),
 ]
 LONG_PRESETS = ["baseline", "poison", "predator"]
-STEPS = 1030  # a window with its learning, and the first steps with what was learned
+STEPS = 1030  # a window with its learning, and the first steps afterwards
 
 needs_node = pytest.mark.skipif(
     shutil.which("node") is None, reason="needs Node 20 or newer: apt-get install nodejs, or https://nodejs.org"
@@ -32,7 +32,7 @@ needs_node = pytest.mark.skipif(
 
 
 def run_in_node(module: str, text: str, folder: Path, steps: int, work_slice: int = 50, threads: int = 0) -> dict:
-    """With 0 threads, one thread without shared memory."""
+    """`threads=0` means one thread without shared memory."""
     return in_node("digest.mjs", module, text, folder, str(steps), str(work_slice), str(threads))
 
 
@@ -78,7 +78,7 @@ def test_learners_that_scale_and_normalize_have_the_bits_of_the_native_engine(mo
 @needs_node
 @pytest.mark.parametrize(("module", "kernel"), MODULES)
 def test_queries_of_two_species_have_the_bits_of_the_native_engine(module, kernel, tmp_path):
-    """Agents observe the nearest, are paid by kin and by what those near eat, and weigh it by who is near."""
+    """Agents observe their nearest neighbor and are paid for nearby kin and meals, weighted by who is near."""
     settings = ("neighbor.foe={of=['predator'], range=90}", "neighbor.any={of=['normal', '*']}")
     settings += ("species.predator.neighbor.foe=false", "species.prey.reward.family=around")
     settings += ("species.prey.reward.gate=foe_count", "reward.pay.any_meals={}", "reward.pay.any_kin={}")
@@ -96,7 +96,7 @@ def test_threads_change_no_bit(module, kernel, threads, tmp_path):
 
 
 @needs_node
-def test_a_world_without_its_threads_says_so(tmp_path):
+def test_a_world_that_lacks_memory_or_threads_says_so(tmp_path):
     told = in_node("thread.mjs", "hedon.wasm", engine_text(load_config("small"), 1), tmp_path)
     assert told["memory"].startswith(
         "the world needs 0.1 GB of memory, and a page has at most 0.0 GB: lower population"
@@ -110,7 +110,7 @@ def test_a_world_without_its_threads_says_so(tmp_path):
 
 
 @needs_node
-def test_a_world_that_no_page_can_have_is_refused_before_it_is_made(tmp_path):
+def test_a_world_too_large_for_any_page_is_refused_before_it_is_made(tmp_path):
     text = engine_text(load_config("small", overrides=["population.capacity=15000"]), 1)
     words = r"the world needs 5\.\d GB of memory, and a page has at most 4\.0 GB: lower population\.capacity"
     with pytest.raises(AssertionError, match=words):
@@ -119,8 +119,8 @@ def test_a_world_that_no_page_can_have_is_refused_before_it_is_made(tmp_path):
 
 @needs_node
 @pytest.mark.long
-def test_a_world_above_2_gigabytes_lives_and_says_where_there_is_no_more_room(tmp_path):
-    """Addresses above 2 GB are negative as signed numbers, and the allocator gives no such block at once."""
+def test_a_world_above_2_gigabytes_runs_and_says_when_memory_is_full(tmp_path):
+    """Addresses above 2 GB are negative as signed numbers, and the allocator cannot give out such a block at once."""
     config = load_config("small", overrides=["population.capacity=7800"])
     told = in_node("large.mjs", "hedon.wasm", engine_text(config, 1), tmp_path, "10")
     simulation = Simulation(config, seeds=[1], backend="portable")
@@ -180,7 +180,7 @@ SHORT = ["world.rollout_steps=256", "population.capacity=90"]
 
 @pytest.fixture(scope="module")
 def handled(tmp_path_factory):
-    """What edit.mjs did to a world with short windows."""
+    """The results of edit.mjs on a world with short windows."""
     if shutil.which("node") is None:
         pytest.skip("needs Node 20 or newer")
     text = engine_text(load_config("small", overrides=SHORT), 1)
@@ -198,14 +198,14 @@ def test_a_world_can_be_changed_by_hand_where_there_is_room(handled):
     assert handled["full"] == "there is no room: population.capacity is 90"
     assert handled["unknown"] == "there is no such species or food"
     assert handled["nothing"] == "there is nothing to remove"
-    # The audit at the end of the next window has found nothing; and after the last death life may begin again.
+    # The audit at the end of the next window found nothing, and agents can be added after the last death.
     assert (handled["step"], handled["extinct"], handled["still"], handled["again"]) == (600, 600, 0, 5)
     must_learn, *refusals = handled["learning"]
     assert must_learn
     assert all(refusal.startswith("the agents are learning") for refusal in refusals)
 
 
-def test_a_world_that_was_kept_goes_on_with_the_same_bits(handled):
+def test_a_kept_world_continues_with_the_same_bits(handled):
     simulation = Simulation(load_config("small", overrides=SHORT), seeds=[1], backend="portable")
     simulation.run(300)
     assert handled["back"] == 100
@@ -213,7 +213,7 @@ def test_a_world_that_was_kept_goes_on_with_the_same_bits(handled):
 
 
 @needs_node
-def test_nobody_is_added_where_children_inherit_late(tmp_path):
+def test_no_agent_can_be_added_if_children_inherit_late(tmp_path):
     text = engine_text(load_config("small", "released"), 1)
     with pytest.raises(AssertionError, match="inherit at the end of a window"):
         in_node("edit.mjs", "hedon.wasm", text, tmp_path, "add")

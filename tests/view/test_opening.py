@@ -1,4 +1,4 @@
-"""The page opens on what evolved: agents have the color of the first weight, and the plots are shown."""
+"""The page opens on what evolved: agents are colored by the first weight, and the plots are shown."""
 
 import polars as pl
 from split_run import record_species
@@ -36,7 +36,7 @@ def test_a_run_opens_with_its_first_weight_and_the_plots(run_folder, watch):
         assert "color=energy" in again.get("location.href")
 
 
-def test_another_world_keeps_the_color_that_somebody_chose(run_folder, watch):
+def test_another_world_keeps_the_color_that_was_chosen(run_folder, watch):
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link)
         watched.rest_at(640)

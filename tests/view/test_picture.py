@@ -1,4 +1,4 @@
-"""The pictures of the page in the documentation; `HEDON_PICTURES=1 pytest tests/view/test_picture.py` takes them."""
+"""Screenshots of the page in the documentation; `HEDON_PICTURES=1 pytest tests/view/test_picture.py` takes them."""
 
 import io
 import os
@@ -15,7 +15,7 @@ LARGEST = 450_000  # bytes of one picture
 
 
 def live(watched, steps):
-    """Runs a live world, and rests."""
+    """Runs a live world for some steps, and pauses it."""
     watched.get("hedon.play(false)")
     watched.until("!hedon.source.busy")
     while (done := watched.get("hedon.source.last")) < steps:
@@ -26,7 +26,7 @@ def live(watched, steps):
 
 
 def show_agent(watched):
-    """Of those who have eaten, the agent nearest to the middle, where its rays are seen best."""
+    """Shows the agent nearest to the middle among those that have eaten; its rays are easiest to see there."""
     live(watched, 1000)
     watched.get(
         """hedon.choose([...hedon.frame.id]
@@ -45,7 +45,7 @@ def show_meals(watched):
 
 
 def show_twin(watched):
-    """The same world with five times the cost of living beside it."""
+    """Shows the world next to a copy with five times the cost of living."""
     live(watched, 64)
     watched.get("hedon.tab('world-panel')")
     watched.page.locator("#twin-setting").select_option("energy.basic_cost")
@@ -89,7 +89,7 @@ def test_the_documentation_has_a_picture_of_each_view(name, watch):
         watched = watch(server.link if kind == "live" else f"http://127.0.0.1:{server.server_port}/index.html")
         show(watched)
         drawn = watched.get("hedon.pictures")
-        watched.until(f"hedon.pictures > {drawn} + 30")  # the panels are looked at a few times a second
+        watched.until(f"hedon.pictures > {drawn} + 30")  # the panels are updated a few times a second
         taken = watched.page.screenshot()
     path = IMAGES / f"{name}.png"
     if os.environ.get("HEDON_PICTURES"):

@@ -17,12 +17,12 @@ NAMES = ("q05", "q25", "median", "q75", "q95")
 
 
 def plot(title):
-    """Code that finds a plot."""
+    """JavaScript that finds a plot by its title."""
     return f"hedon.plots.plots.find(({{ content }}) => content.title === '{title}')"
 
 
 def drawn(watched, title):
-    """The numbers of a plot as they are drawn, steps first."""
+    """The numbers that are drawn in a plot, steps first."""
     return watched.get(f"{plot(title)}.chart.data.map((column) => [...column])")
 
 
@@ -32,7 +32,7 @@ def several(tmp_path_factory):
     return open_run(record_species(tmp_path_factory.mktemp("seeds") / "run", steps=640, seeds=(4, 7, 9)))
 
 
-def test_other_seeds_are_read_and_drawn_only_when_somebody_asks(several, watch):
+def test_other_seeds_are_read_and_drawn_only_on_request(several, watch):
     rows = several.population().sort("step")
     steps = rows["step"].unique().sort().to_list()
 
@@ -100,7 +100,7 @@ def test_a_seed_that_died_out_ends_before_the_others(several, tmp_path, watch):
 
 
 def test_further_runs_are_drawn_over_the_first(several, run_folder, tmp_path, watch):
-    """Under the name of their folder, in lines of their own kind; a run with other species adds what it has."""
+    """Each has the name of its folder and its own line style; a run with other species adds what it has."""
     copy = tmp_path / "second, changed"
     shutil.copytree(several.path, copy)
     for path in (copy / "population").glob("*.parquet"):
@@ -112,7 +112,7 @@ def test_further_runs_are_drawn_over_the_first(several, run_folder, tmp_path, wa
         watched = watch(server.link)
         watched.get("hedon.tab('plots')")
         watched.until(f"hedon.plots.points === {len(steps)} && hedon.plots.seeds === 6")
-        assert watched.page.get_by_label("all runs and seeds (7)").is_checked(), "several runs are given to be compared"
+        assert watched.page.get_by_label("all runs and seeds (7)").is_checked(), "several runs are meant to be compared"
         key = f"solid: run, dashed: second, changed, dotted: {run_folder}"
         assert watched.page.locator(".runs").text_content() == key
         step, *columns = drawn(watched, "mean energy")
@@ -146,7 +146,7 @@ def test_one_seed_offers_no_others(watch):
 
 
 def recorded_quantiles(agents, steps, gene):
-    """The quantiles of a gene of those who live at each step, from the table `agents`."""
+    """The quantiles of a gene among the agents alive at each step, from the table `agents`."""
     births, deaths = agents["birth_step"].to_numpy(), agents["death_step"].fill_null(2**40).to_numpy()
     genes = agents[gene].to_numpy().astype(np.float64)
     return [np.quantile(genes[(births <= step) & (deaths > step)], SHARES).tolist() for step in steps]
@@ -176,7 +176,7 @@ def test_a_distribution_has_the_quantiles_of_the_living(several, watch):
 
 
 def test_a_split_that_the_mean_hides_is_seen(several, tmp_path, watch):
-    """Half of the prey get a weight of +1, half of -1: the plot is dark there and pale between them."""
+    """Half of the prey get a weight near +1, half near -1: the plot is dark at both and pale in between."""
     folder = tmp_path / "run"
     shutil.copytree(several.path, folder)
     for path in (folder / "agents").glob("*.parquet"):
@@ -221,7 +221,7 @@ def test_a_live_world_has_distributions_too(watch):
         )
 
 
-def test_no_distribution_where_lives_are_missing(several, tmp_path, watch):
+def test_no_distribution_is_shown_if_lives_are_missing(several, tmp_path, watch):
     folder = tmp_path / "run"
     shutil.copytree(several.path, folder)
     (folder / "agents" / "living.parquet").unlink()

@@ -1,4 +1,4 @@
-"""The plots of the page give their numbers, are zoomed and smoothed, and are saved as tables and pictures."""
+"""The plots of the page show their values, and can be zoomed, smoothed, and saved as tables and pictures."""
 
 import io
 
@@ -26,7 +26,7 @@ RANGES = "hedon.plots.plots.map(({ chart }) => [chart.scales.x.min, chart.scales
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
-    """A run of one species with a row each 128 steps."""
+    """A run of one species with a row every 128 steps."""
     config = load_config(
         "poison", overrides=["world.rollout_steps=128", 'learning.policy="random"', "learning.minibatch_size=128"]
     )
@@ -41,7 +41,7 @@ def species(tmp_path_factory):
 
 
 def opened(watch, server, rows, **how):
-    """The page with its panel of plots, at rest, when all is read."""
+    """The page with its panel of plots, paused, once all records are loaded."""
     watched = watch(server.link, **how)
     watched.until(f"hedon.source.series.step.length === {rows} && hedon.source.loaded")
     watched.rest_at(128)
@@ -51,7 +51,7 @@ def opened(watch, server, rows, **how):
 
 
 def center(watched, row):
-    """The middle of the first plot's height, at a row: place on the screen."""
+    """The screen position of a row in the first plot, at mid-height."""
     box = watched.page.locator(FIRST).bounding_box()
     left = watched.get(
         f"(({{ chart }}) => chart.valToPos(chart.data[0][{row}], 'x'))(hedon.plots.plots[0])",
@@ -60,7 +60,7 @@ def center(watched, row):
 
 
 def assert_read(watched, rows, row):
-    """Every plot of the poison run gives the numbers of a row."""
+    """Checks that every plot of the poison run shows the numbers of a row."""
     said = watched.get(READOUTS)
     one = rows.row(row, named=True)
     columns = {
@@ -76,7 +76,7 @@ def assert_read(watched, rows, row):
     assert said["food present"].startswith(f"step {one['step']:,}: normal ")
 
 
-def test_the_values_under_mouse_finger_and_focus_are_those_of_the_table(recorded, watch):
+def test_the_values_under_mouse_finger_and_focus_match_the_table(recorded, watch):
     rows = recorded.population().sort("step")
     with serving(run_server(recorded.path)) as server:
         watched = opened(watch, server, ROWS)
@@ -129,7 +129,7 @@ def test_a_drag_zooms_all_plots_and_a_click_still_seeks(recorded, watch):
         ranges = watched.get(RANGES)
         assert ranges == ranges[:1] * plots
         assert ranges[0] == pytest.approx([rows["step"][4], rows["step"][8]], abs=8)
-        assert watched.get("hedon.now") == 128  # a drag is no click
+        assert watched.get("hedon.now") == 128  # a drag is not a click
         watched.until("hedon.plots.plots[0].marked === 128")
         watched.get("hedon.plots.points = -1")  # as after a new row
         watched.until(f"hedon.plots.points === {ROWS}")
@@ -141,7 +141,7 @@ def test_a_drag_zooms_all_plots_and_a_click_still_seeks(recorded, watch):
         now = watched.get("hedon.now")
         mouse.dblclick(*center(watched, 5))
         assert watched.get(RANGES) == whole * plots
-        assert watched.get("hedon.now") == now  # its first click does not move the world for good
+        assert watched.get("hedon.now") == now  # its first click does not move the world permanently
         drag(10, 3)
         assert watched.get(RANGES)[-1] == pytest.approx([rows["step"][3], rows["step"][10]], abs=8)
         button.click()
@@ -175,12 +175,12 @@ def test_a_finger_zooms_sideways(recorded, watch):
 
 
 def smoothed(values, window):
-    """The mean of the rows around each."""
+    """For each row, the mean of the rows around it."""
     before = window // 2
     return [np.mean(values[max(i - before, 0) : i - before + window]) for i in range(len(values))]
 
 
-def test_smoothing_is_a_running_mean_before_the_numbers_and_is_remembered(recorded, watch):
+def test_smoothing_draws_a_running_mean_over_the_numbers_and_is_remembered(recorded, watch):
     rows = recorded.population().sort("step")
     alive = rows["alive"].to_list()
     title = "hedon.plots.plots.find(({ content }) => content.title === 'agents alive')"
@@ -208,7 +208,7 @@ def test_smoothing_is_a_running_mean_before_the_numbers_and_is_remembered(record
 
 
 def saved(watched, name):
-    """The bytes and the name of the file of a button."""
+    """The content and the name of the file that a button saves."""
     with watched.page.expect_download() as download:
         watched.page.get_by_role("button", name=name, exact=True).click()
     with open(download.value.path(), "rb") as file:
@@ -268,7 +268,7 @@ def test_csv_of_a_live_world_has_its_series(watch):
 
 
 @pytest.mark.parametrize("ground", ["light", "dark"])
-def test_a_picture_has_title_key_and_lines_on_the_ground_of_the_page(recorded, watch, ground):
+def test_a_picture_has_title_key_and_lines_on_the_background_of_the_page(recorded, watch, ground):
     with serving(run_server(recorded.path)) as server:
         watched = opened(watch, server, ROWS, color_scheme=ground)
         content, file = saved(watched, "PNG of food present")

@@ -1,4 +1,4 @@
-"""The plots of the page tell species apart, in a replay as in a live world."""
+"""The plots of the page tell species apart, both in a replay and in a live world."""
 
 import shutil
 from pathlib import Path
@@ -67,18 +67,18 @@ def test_a_live_world_plots_the_numbers_of_each_species(watch):
 VERDICTS = """Object.fromEntries([...document.querySelectorAll('.verdict')]
   .map((each) => [each.previousElementSibling.innerText.split(' [')[0], each.innerText]))"""
 PLOTS = "hedon.plots.plots.filter((each) => each.judge).map((each) => each.chart.data.map((column) => [...column]))"
-"""Of each weight what is drawn: steps, means, and the limits of the band."""
+"""What is drawn for each weight: steps, means, and the limits of the band."""
 LAWS = {
     "weight of normal food": {},
     "weight of poison": {"food.poison.gene.initial_mean": 1.0, "food.poison.gene.initial_sd": 0.02},
     "weight of action": {"genome.mutation.w_action": {"law": "student_t", "df": 3.0, "scale": 0.2, "limit": 0.3}},
 }
-"""Settings that make the gene of each weight begin or mutate unlike the neutral genes."""
+"""Settings that make the gene of each weight start or mutate differently from the neutral genes."""
 
 
 @pytest.fixture(scope="module")
 def unlike(tmp_path_factory) -> Path:
-    """A run whose genes have founders and mutations of their own."""
+    """A run whose genes differ in their founders and mutations."""
     config = load_config("poison").with_("learning.policy", "random").with_("world.rollout_steps", 256)
     for changes in LAWS.values():
         for path, value in changes.items():
@@ -89,7 +89,7 @@ def unlike(tmp_path_factory) -> Path:
 
 
 def test_each_weight_has_the_band_of_its_own_founders_and_mutations(unlike, watch):
-    """Of 4000 neutral genes that the analysis walks, 5 % are beyond the limits that the page has of 400."""
+    """Of 4000 neutral genes that the analysis simulates, 5 % are beyond the page's limits, which come from 400."""
     (world,) = read_worlds([open_run(unlike)])
     tree = walked_pedigree(world)
     assert tree is not None
@@ -111,14 +111,14 @@ def test_each_weight_has_the_band_of_its_own_founders_and_mutations(unlike, watc
                 tree, living, mutation_law(world.config, world.gene(name)), np.random.default_rng(1), 4000
             )
             share = ((walked < np.array(low)) | (walked > np.array(high))).mean(axis=0)
-            assert (share > 0.015).all(), title  # the error of a share of 400 is 1.1 %
+            assert (share > 0.015).all(), title  # the standard error of a share of 400 is 1.1 %
             assert (share < 0.09).all(), title
             assert numbers(said[title]) == pytest.approx([mean[-1], low[-1], high[-1]], abs=2e-3)
             where = "within" if low[-1] <= mean[-1] <= high[-1] else "outside"
             assert f"{where} drift" in said[title]
 
 
-def test_a_band_is_left_out_where_a_parent_is_missing(unlike, tmp_path, watch):
+def test_a_band_is_left_out_if_a_parent_is_missing(unlike, tmp_path, watch):
     folder = tmp_path / "run"
     shutil.copytree(unlike, folder)
     for part in [*(folder / "agents").glob("*.parquet"), *folder.glob("living*.parquet")]:
@@ -131,7 +131,7 @@ def test_a_band_is_left_out_where_a_parent_is_missing(unlike, tmp_path, watch):
         watched.rest_at(4096)
         watched.until("!/^$|yet/.test(document.querySelectorAll('.verdict')[1].innerText)")
         said = watched.get(VERDICTS)
-    assert "drift (" in said["weight of normal food"]  # by 16 recorded neutral genes of its own law
+    assert "drift (" in said["weight of normal food"]  # from 16 recorded neutral genes with the same law
     assert said["weight of poison"] == "No band: the parents of some agents are not known."
 
 
@@ -160,7 +160,7 @@ def test_an_empty_plot_says_when_it_fills(watch):
         run_live(watched, 20)
         watched.get("hedon.tab('plots')")
         watched.until("document.querySelector('.empty').innerText.includes('Fills from step 512 on')")
-        for step in (256, 512):  # a point at the end of each stretch of steps that a page asks for
+        for step in (256, 512):  # a point at the end of each batch of steps that the page requests
             run_live(watched, step)
         watched.until("[...document.querySelectorAll('.empty')].every((each) => each.hidden)")
 
