@@ -1,4 +1,4 @@
-"""The settings of a recorded run: what it changes, and all of them."""
+"""The settings of a recorded run: those that it changes, and all of them."""
 
 from view_page import run_server, serving
 from worlds import QUICK

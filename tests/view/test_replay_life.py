@@ -1,4 +1,4 @@
-"""What a replay says of a life is what the records say, under a title that is true at the step that is shown."""
+"""A replay shows a life as the records have it, under a title that is true at the step shown."""
 
 import polars as pl
 import pytest
@@ -36,7 +36,7 @@ def tables(watched: Watched) -> dict[str, dict[str, str]]:
 
 
 def check(watched, row, title, meals):
-    """Compares the panel with a row of the table of agents, and returns what stands for the step alone."""
+    """Compares the panel with a row of the table of agents, and returns the values that belong to the step only."""
     name = f"Agent {row['agent_id']}"
     watched.get(f"hedon.choose({row['agent_id']})")
     watched.until(f"document.querySelector('#agent h2')?.textContent === '{name}'")
@@ -50,7 +50,7 @@ def check(watched, row, title, meals):
     return found[name]
 
 
-def test_counts_of_a_life_stand_under_the_title_that_is_true(species_run, watch):
+def test_counts_of_a_life_are_shown_under_a_true_title(species_run, watch):
     agents = open_run(species_run).agents()
     born = agents.filter(pl.col("birth_step") <= STEP)
     died = born.filter(pl.col("death_step") > STEP)
@@ -81,13 +81,13 @@ def test_a_live_world_says_up_to_which_step_it_counts(watch):
     with serving(live_server("small")) as server:
         watched = watch(server.link)
         run_live(watched, 50)
-        watched.get("hedon.seek(10)")  # a look back: the counts are those of the newest step
+        watched.get("hedon.seek(10)")  # looking back: the counts are still those at the newest step
         watched.get("hedon.choose(hedon.frame.id[0])")
         watched.until("document.querySelector('#agent').textContent.includes(`up to step ${hedon.source.last}`)")
 
 
 def test_a_live_world_shows_the_reward_of_each_window(watch):
-    """What the native world gained of reward between the ends of two windows; it has a short window here."""
+    """Compared with the reward that agents of the native world gain from one window's end to the next."""
     config = load_config("small", overrides=["world.rollout_steps=64", "learning.minibatch_size=64"])
     page = {"run": False, "worlds": [live_world(config, "small")]}
     with serving(Server({"page": lambda: page}, dict)) as server:

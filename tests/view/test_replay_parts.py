@@ -1,4 +1,4 @@
-"""A replay has every agent and every food at every recorded step, wherever the parts of the records end."""
+"""A replay has every agent and every food at every recorded step, wherever the records are split into parts."""
 
 from collections import Counter
 
@@ -21,7 +21,7 @@ COUNTS = """(() => {
 
 
 def recorded(folder, world):
-    """What the frames of a world have at each step: how many of each kind, and the ids in order."""
+    """The contents of a world's frames at each step: the number of each kind, and the ids in order."""
     rows = open_run(folder).frames().filter(pl.col("world") == world).collect()
     return {
         step: (Counter(mine["kind"]), mine["id"].drop_nulls().sort().to_list())
@@ -47,7 +47,7 @@ def species_run(tmp_path_factory):
 
 @pytest.mark.parametrize("world", [0, pytest.param(1, marks=pytest.mark.long)])
 def test_every_recorded_step_is_shown_whole(species_run, watch, world):
-    """Of one part; then of parts so small that a step goes on in a third one."""
+    """First from one part, then from parts so small that a step extends into a third one."""
     folder = species_run
     known = recorded(folder, world)
     assert sorted(known) == list(range(FRAMES, 257, FRAMES))
@@ -68,7 +68,7 @@ def test_every_recorded_step_is_shown_whole(species_run, watch, world):
 
 @pytest.mark.long
 def test_the_demo_site_shows_all_agents_at_every_step(watch):
-    """Against the table of the lives, which no part of the frames can hide."""
+    """Compared with the table of lives, which does not depend on the parts of the frames."""
     with serving(demo_server()) as server:
         watched = watch(f"http://127.0.0.1:{server.server_port}/index.html")
         watched.until("hedon.source.lives.size > 0")

@@ -18,7 +18,7 @@ def report(tmp_path_factory):
 
 
 @pytest.mark.parametrize("ground", ["dark", pytest.param("light", marks=pytest.mark.long)])
-def test_the_report_has_the_ground_of_the_screen(ground, report, browser):
+def test_the_report_follows_the_color_scheme_of_the_screen(ground, report, browser):
     page = browser.new_context(color_scheme=ground).new_page()
     page.goto(report.as_uri())
     page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")
@@ -26,7 +26,7 @@ def test_the_report_has_the_ground_of_the_screen(ground, report, browser):
     assert (sum(channels) < 150) == (ground == "dark")
     found = Axe().run(page, options={"runOnly": ["color-contrast"]}).response["violations"]
     assert [node["target"] for each in found for node in each["nodes"]] == []
-    # Figures have dark letters, so they keep their white ground.
+    # Figures have dark text, so they keep their white background.
     assert (
         page.evaluate("getComputedStyle(document.querySelector('figure img')).backgroundColor") == "rgb(255, 255, 255)"
     )

@@ -1,4 +1,4 @@
-"""A page at rest leaves the graphics alone; whatever changes the picture draws it again."""
+"""An idle page draws nothing; anything that changes the picture redraws it."""
 
 from view_page import run_server, serving
 
@@ -27,7 +27,7 @@ CHANGES = {
 
 
 def still(watched) -> None:
-    """Waits for pictures of the page in which nothing is drawn."""
+    """Waits until the page draws nothing for a while."""
     for _ in range(20):
         drawn, pictures = watched.get("[drawn, hedon.pictures]")
         watched.until(f"hedon.pictures > {pictures} + 20")
@@ -36,7 +36,7 @@ def still(watched) -> None:
     raise AssertionError("the page draws though nothing changes")
 
 
-def test_what_changes_the_picture_draws_it_and_then_the_page_rests(run_folder, watch):
+def test_a_change_redraws_the_picture_and_then_the_page_rests(run_folder, watch):
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link)
         watched.get(COUNTED)
@@ -45,7 +45,7 @@ def test_what_changes_the_picture_draws_it_and_then_the_page_rests(run_folder, w
         for what, change in CHANGES.items():
             drawn = watched.get("drawn")
             watched.get(f"({change}, 0)")
-            watched.until(f"{what!r} && drawn > {drawn}")  # so that a failure names it
+            watched.until(f"{what!r} && drawn > {drawn}")  # so that a failure names the change
             still(watched)
         drawn = watched.get("drawn")
         watched.get("hedon.play(true)")

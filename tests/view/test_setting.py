@@ -1,4 +1,4 @@
-"""A changed setting acts at once where a living world can take it, with the bits of a branch of the native world."""
+"""A changed setting acts at once if a running world can take it, with the same bits as a branch of the native world."""
 
 import pytest
 from view_page import live_server, run_live, serving
@@ -14,7 +14,7 @@ pytest_plugins = ("view_fixture",)
 def watched(watch):
     with serving(live_server("small")) as server:
         page = watch(server.link)
-        run_live(page, 150)  # or some more where the page was quicker than the test
+        run_live(page, 150)  # or a few more if the page was faster than the test
         page.get("hedon.tab('settings')")
         page.get("document.querySelectorAll('#settings details').forEach((box) => (box.open = true))")
         yield page
@@ -26,7 +26,7 @@ def when(watched, path):
     )
 
 
-def test_a_living_world_goes_on_with_another_value(watched):
+def test_a_running_world_continues_with_a_changed_value(watched):
     begun = watched.get("hedon.source.last")
     watched.page.locator("[data-path='energy.basic_cost']").fill("0.2")
     watched.until("hedon.source.acts.length === 1")
@@ -68,14 +68,14 @@ def test_a_change_waits_until_the_agents_have_learned(watched):
 @pytest.mark.parametrize(
     "path", ["food.normal.initial_count", pytest.param("sensor.ray_count", marks=pytest.mark.long)]
 )
-def test_what_matters_from_the_beginning_says_so(path, watched):
+def test_a_setting_that_matters_from_the_beginning_says_so(path, watched):
     watched.page.locator(f"[data-path='{path}']").fill("7")
     assert when(watched, path) == "matters from the beginning: start again"
     watched.page.locator("#restart").click()
     watched.until(f"hedon.source.changes.get('{path}') === '7' && hedon.frame")
 
 
-def test_a_setting_that_memory_depends_on_is_refused_in_words(watched):
+def test_a_setting_that_memory_depends_on_is_refused_with_a_reason(watched):
     watched.page.locator("[data-path='population.capacity']").fill("60")
     row = "document.querySelector(\"[data-path='population.capacity']\").closest('label')"
     watched.until(f"{row}.querySelector('.when').textContent.includes('start again')")

@@ -1,4 +1,4 @@
-"""In a world of several species, what is shown of a gene is of those who have it."""
+"""In a world of several species, the values shown for a gene come from the agents that have it."""
 
 import io
 
@@ -48,7 +48,7 @@ def test_each_gene_of_the_species_has_a_bar(watched):
 
 
 def test_the_scatter_shows_the_genes_of_either_species(watched):
-    """As many dots as living agents lie apart, in the color of the species."""
+    """The color of the species covers enough pixels for a dot per living agent, allowing for overlaps."""
     watched.get("hedon.tab('plots')")
     for s, color in enumerate(watched.get("hedon.source.layout.species.map((each) => each.color)")):
         watched.page.get_by_label("Species", exact=True).select_option(str(s))
@@ -57,4 +57,4 @@ def test_the_scatter_shows_the_genes_of_either_species(watched):
         image = imread(io.BytesIO(watched.page.locator("#scatter").screenshot()))[:, :, :3]
         wanted = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
         dots = (abs(image - wanted).max(axis=2) < 0.02).sum()
-        assert dots > min(8 * alive, 400)  # a dot has 16 pixels, and some lie on others
+        assert dots > min(8 * alive, 400)  # a dot has 16 pixels, and some dots overlap

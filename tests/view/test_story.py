@@ -1,4 +1,4 @@
-"""What a reader of the article does, by script: goals are reached, and the engine in Python has the same bits."""
+"""Scripts act as readers of the article: goals are reached, and the engine in Python gives the same bits."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def test_a_reader_steers_to_five_meals_and_the_link_has_the_same_bits(article):
 
 
 def steered(watched, track, commands, steps):
-    """The digest after the same commands in Python, for as many steps."""
+    """The digest in Python after the same commands and the same number of steps."""
     seed = watched.get(f"{stage('creature')}.seed")
     worlds = hedon.make(SCENES / "creature.toml", seed=seed, actions="logit", backend=backend(watched, "creature"))
     done, at = 0, 0
@@ -93,7 +93,7 @@ def test_reward_rises_without_a_meal_if_moving_feels_good(article):
 
 
 @pytest.mark.long
-def test_it_learns_to_eat_more_and_with_a_bad_feeling_to_sit(article):
+def test_it_learns_to_eat_more_and_to_sit_still_if_moving_feels_bad(article):
     watched = article("learning")
     learning = stage("learning")
     watched.page.locator("#learning-run").click()
@@ -113,7 +113,7 @@ def test_it_learns_to_eat_more_and_with_a_bad_feeling_to_sit(article):
 
 
 def test_deaths_and_births_are_marked_where_they_happen_and_counted(article):
-    """With dear steps founders starve: the page marks those that Python loses, at their last places."""
+    """With costly steps founders starve; the page counts and marks the same births and deaths as Python."""
     dear = "energy.basic_cost=0.02"
     watched = article("family")
     family = stage("family")
@@ -126,7 +126,7 @@ def test_deaths_and_births_are_marked_where_they_happen_and_counted(article):
     died = watched.get(f"[...{family}.live.lives.all()].filter(({{ death }}) => death >= 0).length")
     assert died > 0
     assert 80 + born - died == len(agents["agent_id"])
-    assert max(agents["agent_id"]) < 80 + born, "ids go on from those of the founders"
+    assert max(agents["agent_id"]) < 80 + born, "ids continue after those of the founders"
     founders = watched.get(
         f"[...{family}.live.lives.all()].filter(({{ parent, death }}) => parent < 0 && death < 0).length"
     )
@@ -141,7 +141,7 @@ def test_deaths_and_births_are_marked_where_they_happen_and_counted(article):
     assert all(parents.get(each["child"], each["parent"]) == each["parent"] for each in marked[1])
 
 
-def test_the_curves_of_chances_are_those_of_the_model(article):
+def test_the_curves_of_hazard_and_birth_rate_match_the_model(article):
     watched = article("family")
     config = load_config(SCENES / "family.toml")
     species = next(iter(config.species.values()))
@@ -173,7 +173,7 @@ def test_a_creature_glows_when_it_is_rewarded_and_the_second_slider_waits(articl
 
 
 @pytest.mark.long
-def test_colors_are_feelings_and_children_have_those_of_their_parents(article):
+def test_colors_show_feelings_and_children_inherit_them(article):
     watched = article("family")
     watched.get(f"{stage('family')}.setPlaying(false)")
     run_to(watched, "family", 400)
@@ -215,6 +215,6 @@ def test_a_wrong_link_says_what_is_wrong(article):
     other.get("(location.hash = '#scene=elsewhere')")
     other.until("!document.querySelector('#notice').hidden")
     box = notice.bounding_box()
-    assert 0 <= box["y"] < other.page.viewport_size["height"] - box["height"], "it is seen from where the reader is"
+    assert 0 <= box["y"] < other.page.viewport_size["height"] - box["height"], "it is visible where the reader is"
     other.get("(location.hash = '#scene=sandbox')")
     other.until("document.querySelector('#notice').hidden")

@@ -1,4 +1,4 @@
-"""What a reader does in the article's last scenes, by script: the contest and the sandbox."""
+"""Scripts act as readers in the article's last scenes, the contest and the sandbox."""
 
 import re
 
@@ -30,7 +30,7 @@ def test_a_contest_is_counted_and_its_link_carries_choice_and_seed(article):
     assert watched.get(chances) == [1 / 32, 1, 5 / 16]
 
 
-def test_the_worlds_of_a_contest_stand_in_a_table_and_are_compared_with_a_coin(article):
+def test_the_worlds_of_a_contest_are_listed_in_a_table_and_compared_with_a_coin(article):
     watched = article("contest")
     ends = [(1, 3, 5), (2, 9, 1), (3, 4, 4), (4, 7, 2)]
     for seed, yours, its in ends:
@@ -60,7 +60,7 @@ def test_the_worlds_of_a_contest_stand_in_a_table_and_are_compared_with_a_coin(a
 
 
 def rests(watched, name):
-    """Whether the world of a scene stays at its first step while the page goes on."""
+    """Whether the world of a scene stays at its first step while the page keeps drawing."""
     watched.until(f"{stage(name)}.live.ready")
     drawn = watched.get("hedon.pictures")
     watched.until(f"hedon.pictures > {drawn} + 15")
@@ -68,7 +68,7 @@ def rests(watched, name):
 
 
 @pytest.mark.long
-def test_reset_and_sliders_end_a_contest_that_runs_and_another_may_begin(article):
+def test_reset_and_sliders_end_a_running_contest_and_another_may_begin(article):
     watched = article("contest")
     begin = watched.page.locator("#contest-one")
     reset = watched.page.locator("#contest").get_by_role("button", name="Reset")
@@ -88,10 +88,10 @@ def test_reset_and_sliders_end_a_contest_that_runs_and_another_may_begin(article
 
 
 @pytest.mark.long
-def test_a_contest_has_no_world_but_those_that_count(article):
+def test_a_contest_plays_only_worlds_that_count(article):
     watched = article("contest", "#scene=contest&seed=1&step=20800")
     play = watched.page.locator("#contest").get_by_role("button", name=re.compile("Play|Pause"))
-    assert play.count() == 0, "it would go on past the end, or play one that is never counted"
+    assert play.count() == 0, "it would run past the end, or play a world that is never counted"
     assert watched.get(f"{stage('contest')}.play.hidden")
     assert watched.page.locator("#contest-more").is_disabled()
     watched.page.locator("#contest-one").click()
@@ -219,7 +219,7 @@ def test_the_score_counts_descendants_and_a_press_on_the_map_plays(article):
 @pytest.mark.parametrize(
     "world", ["poison", *(pytest.param(name, marks=pytest.mark.long) for name in ("predators", "seasons", "pitfalls"))]
 )
-def test_the_sandbox_has_worlds_that_are_those_of_python(world, article):
+def test_the_worlds_of_the_sandbox_match_python(world, article):
     watched = article("sandbox")
     sandbox = stage("sandbox")
     watched.page.locator(f"button[data-world={world}]").click()
@@ -268,12 +268,12 @@ def test_the_chart_of_the_sandbox_begins_with_the_world_and_counts_food_and_ever
     watched.page.locator("button[data-world=seasons]").click()
     watched.until(f"{sandbox}.world.name === 'seasons' && {sandbox}.course()[0]?.length === 3")
     caption = watched.get("document.querySelector('#sandbox figcaption').textContent")
-    assert "redator" not in caption, "this world has none"
+    assert "redator" not in caption, "this world has no predators"
     colors = watched.get("getComputedStyle(document.querySelector('#sandbox-scale')).backgroundImage")
-    assert colors.index("rgb(61, 111, 216)") < colors.index("rgb(196, 120, 0)"), "blue is little, amber is much"
+    assert colors.index("rgb(61, 111, 216)") < colors.index("rgb(196, 120, 0)"), "blue means little energy, amber much"
 
 
-def test_the_link_of_a_world_that_plays_has_letters_too(article):
+def test_the_link_of_a_playing_world_has_a_digest_too(article):
     watched = article("sandbox")
     sandbox = stage("sandbox")
     watched.until(f"{sandbox}.playing && {sandbox}.live.last > 10")

@@ -1,4 +1,4 @@
-"""The scene in which a feeling evolves: a guess by pointer, finger and keys, and worlds that are those of Python."""
+"""The scene in which a feeling evolves: a guess by pointer, finger and keyboard, and worlds that match Python."""
 
 import re
 
@@ -21,7 +21,7 @@ SHORT = 1024  # steps after which a test ends a world
 
 
 def end_early(watched):
-    """Lets the world that runs end at the next look, as it does at the right end of the plot."""
+    """Ends the running world at its next update, as if it had reached the right end of the plot."""
     watched.until(f"{EVOLVE}.live.last >= {SHORT}")
     watched.get(f"{EVOLVE}.stop()")
 
@@ -89,7 +89,7 @@ def test_a_finger_draws_and_scrolls_over_the_result(article):
     assert values == re.findall(r"guess=([^&]+)", watched.get(LINK))[0].split("_"), "it stays as it was drawn"
 
 
-def test_its_lines_are_those_of_python_with_and_without_learning(article):
+def test_its_lines_match_python_with_and_without_learning(article):
     watched = article("evolve", "#scene=evolve&seed=1&step=0&guess=0_0_0_0_0_0_0_0_0_0_0.5")
     watched.until(READY)
     watched.page.locator("#evolve-run").click()
@@ -114,7 +114,7 @@ def test_its_lines_are_those_of_python_with_and_without_learning(article):
 
 
 @pytest.mark.long
-def test_worlds_end_as_the_text_has_it():
+def test_worlds_end_as_the_text_says():
     config = load_config(SCENES / "evolve.toml")
     ends = {}
     for learns in (True, False):
@@ -128,6 +128,6 @@ def test_worlds_end_as_the_text_has_it():
             beyond[learns] += abs(feeling) > max(map(abs, idle))
             assert not learns or 0.195 <= feeling <= 0.5
     assert beyond[True] == 8
-    assert beyond[False] <= 2, "one of nine by chance"
+    assert beyond[False] <= 2, "one in nine by chance"
     left = {learns: sum(map(len, genomes)) for learns, genomes in ends.items()}
     assert 0.28 < left[False] / left[True] < 0.4, "a third as many"

@@ -1,4 +1,4 @@
-"""The recording at the top of the article: it is that of the preset, moves at once, and can be missing."""
+"""The recording at the top of the article shows the preset, moves at once, and may be missing."""
 
 import gzip
 import json
@@ -15,7 +15,7 @@ pytest_plugins = ("view_fixture", "story_fixture")
 STRIP = "[...document.querySelector('#hero-world').getContext('2d').getImageData(0, 100, 400, 1).data]"
 
 
-def test_it_begins_within_a_second_and_can_rest(story_site, watch):
+def test_it_begins_within_a_second_and_can_be_paused(story_site, watch):
     watched = watch(story_site.link + PAGE)
     watched.until("hedon.hero?.moment() > 2")
     assert watched.page.locator("#hero-world").is_visible()
@@ -65,8 +65,8 @@ def test_the_recording_is_what_its_command_makes(tmp_path):
     assert gzip.decompress((tmp_path / "hero.gz").read_bytes()) == gzip.decompress(page_files()["hero.gz"].read_bytes())
 
 
-def test_its_places_are_those_that_the_page_reads():
-    """The head names what follows, and places that add up stay in the arena."""
+def test_its_positions_have_the_format_that_the_page_reads():
+    """The header names the columns that follow, and the summed position changes stay in the arena."""
     head, _, rest = gzip.decompress(page_files()["hero.gz"].read_bytes()).partition(b"\n")
     told = json.loads(head)
     columns, at = {}, 0

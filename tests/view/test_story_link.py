@@ -1,4 +1,4 @@
-"""Links of the article that are damaged, or lead to another world than they did: the page says so."""
+"""The page reports links to the article that are damaged, or that lead to a different world than before."""
 
 import pytest
 from story_page import stage
@@ -28,14 +28,14 @@ DAMAGED = {
 
 
 def told(watched, address):
-    """What the notice says when the address is opened."""
+    """The text of the notice after an address is opened."""
     watched.get(f"({NOTICE}.hidden = true, location.hash = '#{address}')")
     watched.until(f"!{NOTICE}.hidden")
     return watched.get(f"{NOTICE}.querySelector('span').textContent")
 
 
 @pytest.mark.long
-def test_a_damaged_link_is_told_as_that(article):
+def test_a_damaged_link_is_reported_as_damaged(article):
     watched = article("creature")
     for address, words in DAMAGED.items():
         text = told(watched, address)
@@ -43,7 +43,7 @@ def test_a_damaged_link_is_told_as_that(article):
         assert words in text, address
 
 
-def test_a_link_to_another_world_is_told_as_that(article):
+def test_a_link_to_another_world_is_reported(article):
     watched = article("family", "#scene=family&seed=1&step=5")
     watched.until("hedon.opened !== ''")
     digest = watched.get(f"{stage('family')}.live.digest()")[:8]
@@ -56,7 +56,7 @@ def test_a_link_to_another_world_is_told_as_that(article):
     assert watched.get(f"{NOTICE}.hidden")
 
 
-def test_a_guess_of_a_link_stays_on_its_plot(article):
+def test_a_guess_in_a_link_stays_on_its_plot(article):
     watched = article("evolve", "#scene=evolve&seed=1&step=0&guess=1000000000_-99_0.5_0.5_0.5_0.5_0.5_0.5_0.5_0.5_0.5")
     watched.until("hedon.opened !== ''")
     assert watched.get(f"{NOTICE}.hidden")
@@ -77,7 +77,7 @@ def test_a_notice_hides_neither_the_heading_nor_the_arena(width, article):
 
 
 @pytest.mark.parametrize("width", [1400, 390])
-def test_a_link_and_its_letters_stand_together(width, article):
+def test_a_link_and_its_digest_are_shown_together(width, article):
     watched = article("family", "#scene=family&seed=1&step=5&digest=00000000", **sized(width))
     watched.until("document.querySelector('#family .digest').textContent.includes('in the link')")
     names = ["#family .permalink", "#family .digest"]

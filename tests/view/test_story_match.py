@@ -1,4 +1,4 @@
-"""A reader plays the contest to its end; the score, the table, the picture and the link then agree."""
+"""A reader plays the contest to its end; then the score, the table, the picture and the link agree."""
 
 import re
 
@@ -28,7 +28,7 @@ def slide(watched, path, value):
 
 
 def written(watched):
-    """The texts of the picture that the button saves."""
+    """The texts in the picture that the button saves."""
     watched.get(
         """(() => {
           window.written = [];
@@ -70,7 +70,7 @@ def test_a_reader_plays_to_the_end_and_the_score_is_the_same_everywhere(width, g
     ends = watched.get(f"{CONTEST}.results()")
     assert [end["seed"] for end in ends] == [*range(1, worlds + 1)]
     mine, its = won(ends)
-    assert mine > its, "so that the words of both sides are known"
+    assert mine > its, "the texts below are for a reader who wins"
     assert numbers(watched.get(SCORE))[:5] == [worlds, ends[-1]["you"], ends[-1]["evolution"], mine, its]
     assert f"You beat evolution {mine} : {its}" in watched.get(SCORE)
     cells = watched.page.locator("#contest tbody td").all_inner_texts()
@@ -78,7 +78,7 @@ def test_a_reader_plays_to_the_end_and_the_score_is_the_same_everywhere(width, g
     head, about, foot = written(watched)
     assert head == f"I beat evolution {mine} : {its}"
     assert about.endswith("a meal feels like 4 and moving like \N{MINUS SIGN}4.")
-    assert foot == "Where do rewards come from? ", "nobody else can open an address of this machine"
+    assert foot == "Where do rewards come from? ", "no one else can open an address on this machine"
     watched.until(f"{CONTEST}.live.digest()")
     watched.page.locator("#contest .permalink").click()
     watched.until("location.hash.includes('&digest=')")
@@ -90,7 +90,7 @@ def test_a_reader_plays_to_the_end_and_the_score_is_the_same_everywhere(width, g
 
 
 @pytest.mark.long
-def test_a_link_of_several_worlds_plays_all_of_them(article):
+def test_a_link_to_several_worlds_plays_all_of_them(article):
     changes = [f"{MEAL}=-8", f"{MOVING}=8"]
     link = f"#scene=contest&seed=3&step=600&worlds=2&{'&'.join(changes)}"
     watched = article("contest", link)

@@ -1,4 +1,4 @@
-"""A reader of the article does things in any order: before an arena is seen, in mid-run, with another link."""
+"""A reader of the article may do things in any order: before an arena is seen, in mid-run, or with another link."""
 
 import re
 
@@ -8,16 +8,16 @@ from story_page import run_to, set_knob, stage
 pytest_plugins = ("view_fixture", "story_fixture")
 
 LOW = {"viewport": {"width": 390, "height": 420}, "has_touch": True}
-"""A screen on which a scene's words leave no place for its arena."""
+"""A screen on which a scene's words leave no room for its arena."""
 
 
 def scroll_to(watched, shown, where):
-    """Puts an element at the start, the center or the end of the screen."""
+    """Scrolls an element to the start, the center or the end of the screen."""
     watched.get(f"document.querySelector('{shown}').scrollIntoView({{ block: '{where}', behavior: 'instant' }})")
 
 
 def unseen(article, scene, shown):
-    """A reader who has an element of a scene on the screen, but never had its arena."""
+    """A page with an element of a scene on the screen, whose arena has never been on it."""
     watched = article("creature", **LOW)
     scroll_to(watched, shown, "end")
     watched.until(f"{stage(scene)}.live?.ready")
@@ -32,7 +32,7 @@ def unseen(article, scene, shown):
         ("contest", "#contest-one", "Begin"),
     ],
 )
-def test_a_world_runs_and_tells_so_though_its_arena_was_never_seen(scene, button, told, article):
+def test_a_world_runs_and_says_so_though_its_arena_was_never_seen(scene, button, told, article):
     watched = unseen(article, scene, button)
     assert not watched.get(f"{stage(scene)}.pictures")
     watched.page.locator(button).tap()
@@ -41,7 +41,7 @@ def test_a_world_runs_and_tells_so_though_its_arena_was_never_seen(scene, button
     if scene == "contest":
         assert watched.page.locator(button).is_disabled()
         watched.until("document.querySelector('#contest-score').textContent.startsWith('World 1, step ')")
-        watched.until(f"{stage(scene)}.seen")  # the page goes there
+        watched.until(f"{stage(scene)}.seen")  # the page scrolls there
     else:
         assert not watched.get(f"{stage(scene)}.pictures")
 
@@ -52,7 +52,7 @@ def test_four_more_worlds_cannot_be_asked_for_before_the_first(article):
     assert watched.page.locator("#contest-more").is_disabled()
 
 
-def test_a_guess_is_answered_and_a_chart_is_drawn_beside_an_arena_out_of_sight(article):
+def test_a_guess_is_answered_and_a_chart_is_drawn_while_the_arena_is_out_of_sight(article):
     watched = unseen(article, "learning", "#learning .guess")
     scroll_to(watched, "#creature .guess", "end")
     watched.page.locator("#creature input[value=yes]").check()
@@ -72,14 +72,14 @@ def test_a_guess_is_answered_and_a_chart_is_drawn_beside_an_arena_out_of_sight(a
     assert not watched.get(f"{stage('contest')}.pictures")
 
 
-def test_a_scene_that_moves_by_itself_does_so_also_if_its_words_came_first(article):
+def test_a_scene_that_moves_by_itself_does_so_even_if_its_words_came_first(article):
     watched = unseen(article, "sandbox", "#sandbox h2")
     scroll_to(watched, "#sandbox .view", "center")
     watched.until(f"{stage('sandbox')}.live.last > 3")
 
 
 def rests(watched, scene):
-    """Whether the world of a scene stays where it is while the page goes on."""
+    """Whether the world of a scene stays where it is while the page keeps drawing."""
     at = f"[{stage(scene)}.running, {stage(scene)}.playing, {stage(scene)}.live.last]"
     before = watched.get(at)
     drawn = watched.get("hedon.pictures")
@@ -88,7 +88,7 @@ def rests(watched, scene):
 
 
 @pytest.mark.long
-def test_what_begins_another_world_ends_the_learning_of_the_one_before(article):
+def test_starting_another_world_ends_the_learning_of_the_previous_one(article):
     watched = article("learning")
     learning = stage("learning")
     section = watched.page.locator("#learning")
@@ -131,7 +131,7 @@ STEER = "f3l2" * 4000
 
 
 def replayed(article):
-    """A reader in the middle of what a link with many commands does again."""
+    """A page in the middle of replaying a link with many commands."""
     watched = article("creature")
     watched.get(f"(location.hash = '#scene=creature&seed=1&step=20000&steer={STEER}')")
     creature = stage("creature")
@@ -139,17 +139,17 @@ def replayed(article):
     return watched
 
 
-def test_a_steered_link_is_done_again_at_once_and_with_the_same_commands(article):
+def test_a_steered_link_is_replayed_at_once_and_with_the_same_commands(article):
     watched = article("creature")
     drawn = watched.get("hedon.pictures")
     steer = STEER[: 4 * 240]
     watched.get(f"(location.hash = '#scene=creature&seed=1&step=1200&steer={steer}')")
     watched.until(f"{stage('creature')}.live.last === 1200 && !{stage('creature')}.running")
-    assert watched.get("hedon.pictures") - drawn < 480, "no picture for each command"
+    assert watched.get("hedon.pictures") - drawn < 480, "fewer pictures than commands"
     assert watched.get(f"{stage('creature')}.track()") == steer
 
 
-def test_reset_ends_what_a_link_does_again(article):
+def test_reset_ends_the_replay_of_a_link(article):
     watched = replayed(article)
     watched.page.locator("#creature").get_by_role("button", name="Reset").click()
     watched.until(f"{stage('creature')}.live.ready && {stage('creature')}.live.last === 0")
@@ -157,7 +157,7 @@ def test_reset_ends_what_a_link_does_again(article):
     assert watched.get(f"{stage('creature')}.track()") == ""
 
 
-def test_who_presses_the_arena_goes_on_from_where_a_link_is(article):
+def test_a_reader_who_steers_continues_from_where_the_replay_is(article):
     watched = replayed(article)
     watched.page.keyboard.down("ArrowDown")
     watched.until(f"{stage('creature')}.track().includes('b')")
@@ -224,7 +224,7 @@ def test_only_the_main_button_of_a_mouse_steers(article):
 
 
 @pytest.mark.parametrize("how", ["click", pytest.param("key", marks=pytest.mark.long)])
-def test_a_guess_may_be_the_number_where_the_slider_is(how, article):
+def test_a_guess_may_be_the_number_already_on_the_slider(how, article):
     watched = article("learning")
     slider = watched.page.locator("#learning .guess input")
     if how == "click":
@@ -250,7 +250,7 @@ def test_a_button_that_was_pressed_by_a_key_keeps_the_focus(article):
 
 
 @pytest.mark.long
-def test_a_link_that_another_world_overtakes_chooses_nobody(article):
+def test_a_link_interrupted_by_another_world_does_not_choose_its_agent(article):
     watched = article("family")
     family = stage("family")
     watched.get("(location.hash = '#scene=family&seed=1&step=900000&agent=5')")
@@ -260,7 +260,7 @@ def test_a_link_that_another_world_overtakes_chooses_nobody(article):
     assert watched.get(f"{family}.chosen") == 39
 
 
-def test_what_runs_to_its_end_goes_on_in_a_hidden_tab_and_what_plays_rests(article):
+def test_in_a_hidden_tab_a_run_to_its_end_continues_and_a_playing_world_rests(article):
     watched = article("family")
     watched.until(f"{stage('family')}.playing && {stage('family')}.live.last > 0")
     watched.get(f"void {stage('learning')}.runTo(3000)")
@@ -276,4 +276,4 @@ def test_what_runs_to_its_end_goes_on_in_a_hidden_tab_and_what_plays_rests(artic
     assert watched.get(f"{stage('learning')}.live.last") == 3000
     after, played = watched.get(f"[hedon.pictures, {stage('family')}.live.last]")
     assert after <= pictures + 1
-    assert played <= plays + 4, "one order to the engine may have been under way"
+    assert played <= plays + 4, "one request to the engine may have been under way"

@@ -1,4 +1,4 @@
-"""The article as a page: its words, size and sources, and that everybody can use it, on any screen, light or dark."""
+"""The article as a page: its words, size and sources, and its accessibility on any screen, light or dark."""
 
 import gzip
 import json
@@ -22,13 +22,13 @@ pytest_plugins = ("view_fixture",)
 STORY = ROOT / "web" / "src" / "story"
 TEXTS = ("creature", "learning", "family", "evolve", "contest", "sandbox")
 PICTURES = os.environ.get("HEDON_PICTURES")
-"""Where the pictures of all scenes are kept, if anywhere."""
+"""If set, the pictures of all scenes are kept in `build/story`."""
 ASK_AXE = """() => axe.run(document, { resultTypes: ["violations"] }).then(({ violations }) =>
   violations.map(({ id, nodes }) => [id, nodes.map((node) => node.html.slice(0, 160))]))"""
 
 
 class Words(HTMLParser):
-    """The words of a page, and the numbers in it that follow settings."""
+    """The words of a page, and the numbers in it that are bound to settings."""
 
     def __init__(self, html):
         super().__init__()
@@ -58,27 +58,27 @@ def test_the_article_is_short():
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_each_scene_reads_without_a_program(name):
+def test_each_scene_can_be_read_without_scripts(name):
     text = scene(name)
     assert len(Words(text[text.index("<figcaption>") :]).words) > 12, "for those who only read"
     assert name in ("evolve", "sandbox", "contest") or "Your guess" in text
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_numbers_in_the_text_are_those_of_the_config(name):
+def test_numbers_in_the_text_match_the_config(name):
     worlds = story()["worlds"]
     settings = {each["path"]: each["value"] for world in worlds.values() for each in world["settings"]}
     if name in worlds:
         settings = {each["path"]: each["value"] for each in worlds[name]["settings"]}
     found = Words(scene(name))
-    assert not [word for word in found.words if re.match(r"-\d", word)], "a hyphen is no minus sign"
+    assert not [word for word in found.words if re.match(r"-\d", word)], "a hyphen is not a minus sign"
     for path, text in found.bound + ([] if name == "sandbox" else found.knobs):
         assert float(text.replace("\N{MINUS SIGN}", "-")) == settings[path], path
     assert found.bound or name in ("learning", "family", "evolve", "sandbox")
 
 
 def test_the_article_is_small():
-    """Compressed: what a reader loads, of the two modules the one that the browser takes."""
+    """Compressed: what a reader loads, with the one of the two modules that the browser uses."""
     names = [PAGE, "hedon.wasm", "hedon-relaxed.wasm", "assets/story.js", "assets/story.css", "assets/live.worker.js"]
     names += ["assets/shared.js", "assets/member.worker.js", FONT]
     told = len(gzip.compress(json.dumps(story()).encode()))
@@ -89,7 +89,7 @@ def test_the_article_is_small():
     assert page_files()["hero.gz"].stat().st_size < 300_000, "loaded after the first picture"
     assert page_files()["hero.jpg"].stat().st_size < 130_000
     stills = [page_files()[f"still/{name}.jpg"].stat().st_size for name in TEXTS]
-    assert max(stills) < 50_000, "loaded only where a world cannot run"
+    assert max(stills) < 50_000, "loaded only if a world cannot run"
 
 
 def test_the_font_is_small_and_comes_with_its_license(server, browser):
@@ -101,9 +101,9 @@ def test_the_font_is_small_and_comes_with_its_license(server, browser):
     assert watched.faults == []
 
 
-def test_the_numbers_of_the_contest_are_those_of_the_committed_results():
+def test_the_numbers_of_the_contest_match_the_committed_results():
     made = runpy.run_path(str(ROOT / "web" / "evidence.py"))["text"]()
-    assert (STORY / "evidence.json").read_text() == made, "call: python web/evidence.py"
+    assert (STORY / "evidence.json").read_text() == made, "run: python web/evidence.py"
     means = {row["weight"]: row["mean"] for row in json.loads(made)["ends"]["mean"] if row["seed"] == 1}
     evolved = load_config(SCENES / "contest.toml").species["evolution"]
     assert evolved.reward.meal_coef == means["w_normal"]
@@ -174,7 +174,7 @@ def test_with_reduced_motion_nothing_moves_by_itself(server, browser):
 
 
 @pytest.mark.smoke
-def test_the_article_goes_into_a_folder_for_any_server(tmp_path, watch):
+def test_the_article_can_be_exported_to_a_folder_for_any_server(tmp_path, watch):
     done = command("view", "--story", "--export", str(tmp_path / "site"))
     assert "open its story.html" in done.stdout
     with serving(site_server(tmp_path / "site")) as server:

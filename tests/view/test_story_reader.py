@@ -1,4 +1,4 @@
-"""What scenes 1 to 3 of the article say and count is what happens, however a reader goes through them."""
+"""Scenes 1 to 3 of the article report and count what happens, however a reader goes through them."""
 
 import re
 
@@ -17,8 +17,8 @@ ROUNDS = 80
 
 
 @pytest.mark.long
-def test_meals_are_counted_where_rounds_end_however_fast_the_machine_is(article):
-    """All in one order, as on a machine without limits: the engine in Python has the same numbers."""
+def test_meals_are_counted_at_the_ends_of_rounds_however_fast_the_machine_is(article):
+    """All steps in one request, as on an infinitely fast machine: the engine in Python gives the same numbers."""
     watched = article("learning")
     learning = stage("learning")
     watched.page.locator("#learning .guess input").fill("7")
@@ -49,7 +49,7 @@ def test_meals_are_counted_where_rounds_end_however_fast_the_machine_is(article)
 
 
 @pytest.mark.long
-def test_one_that_moving_hurts_differs_in_nothing_else(article):
+def test_a_creature_that_moving_hurts_differs_in_nothing_else(article):
     watched = article("learning")
     learning = stage("learning")
     watched.page.locator("#learning-sit").click()
@@ -114,7 +114,7 @@ def test_arrow_keys_steer_after_a_click_on_a_guess_or_a_slider(article):
         watched.page.locator("#creature").get_by_role("button", name="Reset").click()
     slider.focus()
     watched.page.keyboard.press("ArrowRight")
-    assert slider.input_value() == "0.5", "who came by keys moves the slider"
+    assert slider.input_value() == "0.5", "with keyboard focus, arrow keys move the slider"
 
 
 @pytest.mark.parametrize("width", [1400, 390])
@@ -125,7 +125,7 @@ def test_sliders_stay_on_the_screen_with_the_arena(width, article):
     for name, seen in (("creature", ".view"), ("learning", ".view")):
         arena = watched.page.locator(f"#{name} {seen}").bounding_box()
         knobs = watched.page.locator(f"#{name} .knobs").bounding_box()
-        assert knobs["y"] > arena["y"] + arena["height"], f"{name}: no answer above moves them"
+        assert knobs["y"] > arena["y"] + arena["height"], f"{name}: the sliders come first, so no answer moves them"
         assert knobs["y"] + knobs["height"] - arena["y"] < 844, name
     section = watched.page.locator("#creature").bounding_box()
     knobs = watched.page.locator("#creature .knobs").bounding_box()
@@ -133,7 +133,7 @@ def test_sliders_stay_on_the_screen_with_the_arena(width, article):
 
 
 def drawn(watched, chart):
-    """Notes from now on what a chart writes, and the colors of its last picture in their order."""
+    """Starts to record what a chart writes, and the colors of its last picture in their order."""
     watched.get(
         f"""(() => {{
           const ink = document.getElementById("{chart}").getContext("2d");
@@ -147,7 +147,7 @@ def drawn(watched, chart):
     )
 
 
-def test_n_goes_through_the_living_that_have_a_parent_wherever_the_focus_is(article):
+def test_n_cycles_through_living_children_wherever_the_focus_is(article):
     watched = article("family")
     family = stage("family")
     watched.get(f"{family}.setPlaying(false)")
@@ -166,7 +166,7 @@ def test_n_goes_through_the_living_that_have_a_parent_wherever_the_focus_is(arti
     assert watched.get(f"{family}.chosen") == expected[0]
 
 
-def test_the_card_tells_meals_and_age_of_child_and_parent_also_of_the_dead(article):
+def test_the_card_shows_meals_and_age_of_child_and_parent_even_if_dead(article):
     watched = article("family")
     family = stage("family")
     watched.get(f"{family}.setPlaying(false)")
@@ -197,7 +197,7 @@ def test_the_card_tells_meals_and_age_of_child_and_parent_also_of_the_dead(artic
     watched.until(f"document.querySelector('#family-card').textContent.startsWith('Creature {dead} (dead):')")
     number.fill("99999")
     number.press("Enter")
-    assert number.input_value() == str(dead), "nobody has that number yet"
+    assert number.input_value() == str(dead), "no creature has that number yet"
 
 
 @pytest.mark.long
@@ -215,7 +215,7 @@ def test_dots_of_kin_are_drawn_above_the_others(article):
     assert kin not in colors[: -colors.count(kin)]
 
 
-def test_a_click_on_empty_ground_takes_the_card_away(article):
+def test_a_click_on_empty_ground_clears_the_card(article):
     watched = article("family")
     family = stage("family")
     watched.get(f"{family}.setPlaying(false)")

@@ -1,4 +1,4 @@
-"""The article as one file: a browser opens it without a server, and its worlds are those of Python."""
+"""The article as one file: a browser opens it without a server, and its worlds match Python."""
 
 import gzip
 import re
@@ -22,7 +22,7 @@ def file(tmp_path_factory):
     return path
 
 
-def test_it_is_small_and_asks_for_nothing(file):
+def test_it_is_small_and_requests_nothing(file):
     text = file.read_text(encoding="utf-8")
     assert len(gzip.compress(file.read_bytes())) < 1_100_000
     assert 'src="./' not in text
@@ -53,7 +53,7 @@ def test_it_plays_and_has_the_bits_of_python_without_a_server(file, browser):
 
 
 @pytest.mark.parametrize("words", [("--live", "--story"), ("--live",), ("run", "--story")])
-def test_only_the_article_alone_fits_into_a_file(tmp_path, words):
+def test_only_the_article_can_be_exported_as_one_file(tmp_path, words):
     done = command("view", *words, "--export", str(tmp_path / "page.html"))
     assert done.returncode == 2
     assert "only the article alone fits into one file; give a folder instead" in done.stderr

@@ -1,4 +1,4 @@
-"""What the article does where something is missing, what it remembers, and that fingers can use it."""
+"""What the article does if something is missing, what it remembers, and whether it can be used by touch."""
 
 import json
 import re
@@ -90,7 +90,7 @@ def test_the_scale_of_energy_follows_one_rule_from_the_first_step_on(watch):
 
 
 @pytest.mark.parametrize("step", [0, 2048])
-def test_no_plot_marks_a_moment_beside_it(run_folder, watch, step):
+def test_no_plot_marks_a_moment_outside_its_axes(run_folder, watch, step):
     with serving(run_server(run_folder)) as server:
         watched = watch(server.link)
         watched.until("hedon.source.series.step.length > 1")
@@ -112,7 +112,7 @@ def test_no_plot_marks_a_moment_beside_it(run_folder, watch, step):
         assert bool(marks) == (step > 0)
 
 
-def test_what_fingers_touch_is_large_enough(article):
+def test_touch_targets_are_large_enough(article):
     watched = article("creature", **sized(390))
     small = watched.get("""[...document.querySelectorAll('button:not(.link), select, summary, input, .guess label')]
       .filter((each) => each.offsetParent && !/checkbox|radio/.test(each.type))
@@ -156,7 +156,7 @@ def test_a_handout_has_a_picture_in_each_scene_and_a_line_for_each_answer(articl
 
 
 @pytest.mark.long
-def test_the_recorded_numbers_of_the_handout_are_those_of_its_worlds():
+def test_the_recorded_numbers_of_the_handout_match_its_worlds():
     record = runpy.run_path(str(ROOT / "web" / "handout.py"))
     kept = json.loads(record["FILE"].read_text())
     assert [record["learning"](each["moving"]) for each in kept["learning"]] == [

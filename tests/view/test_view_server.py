@@ -1,4 +1,4 @@
-"""The local server gives the page and the run's tables to who has the link, and nothing else to anyone."""
+"""The local server gives the page and the run's tables to anyone with the link, and nothing else to anyone."""
 
 import gzip
 import http.client
@@ -84,7 +84,7 @@ def test_only_the_tables_of_the_run_are_served(server, name):
     assert ask(server, f"/{server.token}/{name}")[0].status == 404
 
 
-def test_of_further_runs_only_the_curves_are_served(folder, tmp_path):
+def test_only_the_curves_of_further_runs_are_served(folder, tmp_path):
     other = record(tmp_path / "run", 64)
     index = RunIndex(folder, [other])
     assert [(each["run"], each["seeds"]) for each in index.describe()["others"]] == [(str(other), [1])]
@@ -107,13 +107,13 @@ def test_nothing_can_be_written(server, method):
     assert ask(server, f"/{server.token}/data/run.json", method=method)[0].status == 501
 
 
-def test_a_head_is_that_of_the_answer_without_its_content(server):
+def test_a_head_request_gets_the_headers_without_the_content(server):
     whole, head = (ask(server, f"/{server.token}/index.html", method=method) for method in ("GET", "HEAD"))
     assert (head[0].status, head[1]) == (200, b"")
     assert head[0].getheader("Content-Length") == whole[0].getheader("Content-Length") == str(len(whole[1]))
 
 
-def test_it_listens_on_this_machine_alone_and_forbids_what_a_page_does_not_need(server):
+def test_it_listens_only_on_this_machine_and_forbids_what_a_page_does_not_need(server):
     assert server.server_address[0] == "127.0.0.1"
     policy = ask(server, f"/{server.token}/")[0].headers["Content-Security-Policy"]
     assert "default-src 'none'" in policy
@@ -136,7 +136,7 @@ def test_a_run_with_a_link_inside_is_refused(server, folder, tmp_path):
 
 
 def test_a_page_that_hangs_up_leaves_the_server_quiet(server, capfd):
-    """At once, in the midst of its request, and in the midst of a large answer, with a reset."""
+    """It hangs up with a reset: at once, in the middle of its request, and in the middle of a large answer."""
     for request in (
         b"",
         b"GET /",
@@ -168,7 +168,7 @@ def test_the_command_exports_a_live_page(tmp_path):
 
 
 def test_a_live_world_with_a_rule_in_python_is_refused(tmp_path):
-    """A browser cannot compute it, and the page would tell where the file of the rule is."""
+    """A browser cannot compute it, and the page would reveal the path of the rule's file."""
     (tmp_path / "ruled.toml").write_text('preset = "small"\n[reward]\nrule = "kin.py:kind"\n')
     (tmp_path / "kin.py").write_text("def kind(agent):\n    return agent.linear\n")
     done = hedon("view", "--live", "ruled.toml", "--export", "site", cwd=tmp_path)
@@ -181,7 +181,7 @@ def test_a_live_world_with_a_rule_in_python_is_refused(tmp_path):
         live_world(load_config(tmp_path / "ruled.toml"), "ruled.toml")
 
 
-def test_the_command_wants_a_run_or_a_live_world():
+def test_the_command_needs_a_run_or_a_live_world():
     assert "--live" in str(CliRunner().invoke(app, ["view"]).exception)
 
 
@@ -208,7 +208,7 @@ def test_the_link_leads_to_a_moment(folder):
     assert "--step, --seed and --agent" in str(done.exception)
 
 
-def test_an_address_that_is_none_is_answered(server):
+def test_an_invalid_address_is_answered(server):
     with socket.create_connection(("127.0.0.1", server.server_port)) as connection:
         connection.sendall(f"GET http://[bad/ HTTP/1.0\r\nHost: 127.0.0.1:{server.server_port}\r\n\r\n".encode())
         assert b" 400 " in connection.recv(100)
@@ -230,7 +230,7 @@ def cache(tmp_path, monkeypatch):
 
 
 def test_a_chosen_port_has_the_same_address_after_a_restart(cache):
-    """By the command itself, in processes of their own."""
+    """With the command itself, in separate processes."""
     port, links = free_port(), []
     for _ in range(2):
         command = [*START, "view", "--live", "small", "--port", str(port), "--no-open"]
@@ -304,13 +304,13 @@ def test_a_token_that_others_may_know_is_replaced(spoil, cache):
     fresh = kept_token()
     assert fresh != token
     assert len(fresh) == 32
-    if spoil != "folder":  # which is left as it is: then each start has a token of its own
+    if spoil != "folder":  # a folder is left as it is, so each start has a new token
         assert kept_token() == fresh
         assert not path.is_symlink()
         assert os.name == "nt" or path.stat().st_mode & 0o777 == 0o600
 
 
-def test_without_a_cache_folder_the_token_is_a_new_one(tmp_path, monkeypatch):
+def test_without_a_cache_folder_each_token_is_new(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     assert kept_token() != kept_token()
@@ -331,7 +331,7 @@ def test_a_browser_that_takes_gzip_gets_each_file_compressed(server):
 
 
 @pytest.mark.parametrize("name", ["data/run/frames/part-000000.parquet", "hero.gz", "hero.jpg"])
-def test_files_that_are_dense_are_sent_as_they_are(server, name):
+def test_files_that_are_already_compressed_are_sent_as_they_are(server, name):
     answer, body = ask(server, f"/{server.token}/{name}", encoding="gzip")
     assert (answer.status, answer.getheader("Content-Encoding")) == (200, None)
     assert body == ask(server, f"/{server.token}/{name}")[1]

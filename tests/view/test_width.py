@@ -1,4 +1,4 @@
-"""The page on a desk, a tablet and a phone, light and dark: nothing is cut off or jumps, and everybody can use it."""
+"""The page on a desktop, a tablet and a phone, light and dark: nothing is cut off or jumps, and it is accessible."""
 
 from itertools import product
 
@@ -69,7 +69,7 @@ def test_nothing_is_wider_than_the_page_and_no_panel_grows(servers, width, watch
         )
         before = settled(watched, sizes)
         drawn = watched.get("hedon.pictures")
-        watched.until(f"hedon.pictures > {drawn} + 60")  # several looks at the panels
+        watched.until(f"hedon.pictures > {drawn} + 60")  # several updates of the panels
         assert (panel, watched.get(sizes)) == (panel, before)
         assert watched.get("document.documentElement.scrollWidth") <= width
         right = f"""[...document.querySelectorAll('#{panel} *')].filter((each) => !each.closest('.agents *'))
@@ -124,7 +124,7 @@ def test_a_phone_shows_arena_and_play_first(servers, watch):
         assert box["y"] + box["height"] <= SIZES[390], name
 
 
-def test_who_wants_less_motion_starts_it(servers, watch):
+def test_with_reduced_motion_the_world_waits_for_play(servers, watch):
     watched = watch(servers["live"], reduced_motion="reduce")
     watched.until("hedon.frame")
     assert watched.get("[hedon.playing, hedon.source.last]") == [False, 0]
@@ -133,7 +133,7 @@ def test_who_wants_less_motion_starts_it(servers, watch):
 
 
 def test_the_theme_is_remembered_on_other_ports(servers, watch):
-    """Each `hedon view` has a port of its own."""
+    """Each `hedon view` has its own port."""
     watched = watch(servers["live"])
     watched.page.locator("#theme").click()
     assert watched.get("document.documentElement.dataset.theme") == "dark"
@@ -143,7 +143,7 @@ def test_the_theme_is_remembered_on_other_ports(servers, watch):
     other.close()
 
 
-def test_what_happens_is_said(servers, watch):
+def test_what_happens_is_announced(servers, watch):
     watched = watch(servers["live"])
     rest(watched)
     watched.until("document.querySelector('#said').textContent.startsWith('Agent ')")
