@@ -1,4 +1,4 @@
-"""Two conditions are compared by worlds, whatever holds them, and a pilot says how many worlds are needed."""
+"""Two conditions are compared with worlds as units, from any source, and a pilot shows how many worlds are needed."""
 
 import json
 import math
@@ -34,7 +34,7 @@ EFFECT = 4.0
 
 
 def fill(folder: Path, seeds: int = SEEDS, rest: str | None = None) -> str:
-    """A sweep whose results are made up: worlds of one seed are alike, and the second cost lowers `alive_mean`."""
+    """A sweep with made-up results: worlds with the same seed are similar, and the second cost lowers `alive_mean`."""
     costs = rest or '[factor]\n"energy.basic_cost" = [0.001, 0.01]\n"energy.initial" = [8.0, 9.0]\n'
     plan, store = planned(sweep_file(folder, seeds=seeds, worlds=seeds, rest=costs), str(folder / "place"))
     rng = np.random.default_rng(7)
@@ -78,9 +78,9 @@ def test_pairs_of_seeds_show_what_independent_worlds_hide(tmp_path):
     interval = stats.ttest_rel(two, one).confidence_interval()
     assert found["difference"] == pytest.approx(float((two - one).mean()))
     assert (found["low"], found["high"]) == pytest.approx((interval.low, interval.high))
-    assert found["worlds"] == SEEDS, "two settings of the other factor are one world of a seed each"
+    assert found["worlds"] == SEEDS, "the two settings of the other factor count as one world per seed"
     assert found["effect size"] == pytest.approx(float((two - one).mean() / (two - one).std(ddof=1)))
-    assert found["p"] == pytest.approx(2 / 2**SEEDS), "of all signs only two are as far out"
+    assert found["p"] == pytest.approx(2 / 2**SEEDS), "only two of all patterns of signs are as extreme"
     assert found["p"] < found["p Holm"] < 0.01
     apart = rows(place, "--unpaired")["agents alive, last tenth"]
     welch = stats.ttest_ind(two, one, equal_var=False).confidence_interval()
@@ -88,7 +88,7 @@ def test_pairs_of_seeds_show_what_independent_worlds_hide(tmp_path):
     assert apart["p"] > 0.05
 
 
-def test_what_the_extinct_do_not_have_is_left_out_and_they_are_counted(tmp_path):
+def test_missing_values_of_extinct_worlds_are_left_out_and_the_worlds_are_counted(tmp_path):
     place = fill(tmp_path)
     said = call("compare", place, "--by", "energy.basic_cost")
     content = json.loads((Path(place) / "compare" / "compare.json").read_text())
@@ -104,8 +104,8 @@ def test_what_the_extinct_do_not_have_is_left_out_and_they_are_counted(tmp_path)
     assert "| agents alive" in (Path(place) / "compare" / "compare.md").read_text()
 
 
-def test_pairs_are_of_one_seed_and_one_setting_of_all_other_factors():
-    """A part of a sweep is done: settings differ by a hundred, costs by nothing."""
+def test_pairs_share_the_seed_and_the_settings_of_all_other_factors():
+    """Part of a sweep is done; settings of `start` differ by a hundred, costs by nothing."""
     every = [(seed, cost, start) for seed in range(6) for cost in (0.001, 0.01) for start in (8.0, 9.0)]
     done = [row for i, row in enumerate(every) if i % 3]
     value = [100 * start + 10 * seed for seed, _, start in done]
@@ -117,7 +117,7 @@ def test_pairs_are_of_one_seed_and_one_setting_of_all_other_factors():
     settings = [set(side.select("seed", "start").iter_rows()) for side in (first, second)]
     assert found.matched.left_out == len(settings[0] ^ settings[1]) > 0
     (apart,) = compare(first, second, {"y": "y"}, ["start"], paired=False)
-    assert abs(apart.contrast.difference) < 10, "what seeds differ by, not what settings do"
+    assert abs(apart.contrast.difference) < 10, "the difference between seeds, not between settings"
     missing = table.with_columns(
         y=pl.when((pl.col("cost") == 0.01) & (pl.col("start") == 9.0)).then(None).otherwise("y")
     )
@@ -134,7 +134,7 @@ def test_below_five_worlds_there_is_no_interval():
 
 
 @pytest.mark.parametrize(("pairs", "least"), [(3, "0.25"), (5, "0.062"), (6, None)])
-def test_too_few_pairs_for_any_p_value_below_a_twentieth_are_told(pairs, least):
+def test_too_few_pairs_for_any_p_value_below_a_twentieth_are_reported(pairs, least):
     rows = [(seed, cost, 10.0 * seed + (cost > 0.005) * (5 + seed)) for seed in range(pairs) for cost in (0.001, 0.01)]
     table = pl.DataFrame(rows, schema=["seed", "cost", "alive_mean"], orient="row")
     answer = compare_answer(WorldTable("mine", table, ("cost",)), "cost")
@@ -148,7 +148,7 @@ def test_too_few_pairs_for_any_p_value_below_a_twentieth_are_told(pairs, least):
         assert lowest == pytest.approx(2 / 2**pairs)
 
 
-def test_factors_that_are_not_crossed_are_told(tmp_path):
+def test_factors_that_are_not_crossed_are_reported(tmp_path):
     zipped = (
         '[factor]\n"energy.basic_cost" = [0.001, 0.01]\n"energy.initial" = [8.0, 9.0]\n'
         '[design]\nzip = [["energy.basic_cost", "energy.initial"]]\n'
@@ -180,14 +180,14 @@ def test_what_cannot_be_compared_is_refused(tmp_path, words, message):
 
 @pytest.mark.parametrize(("effect", "needed"), [(0.02, 48), (0.015, 84), (0.01, 186)])
 def test_pairs_for_the_slope_of_fear(effect, needed):
-    """The pilot's ten pairs have an sd of 0.0484."""
+    """The ten pairs of the pilot have a standard deviation of 0.0484."""
     assert worlds_needed(effect / 0.0484, "pairs") == needed
 
 
 @pytest.mark.parametrize("design", ["pairs", "independent"])
 @pytest.mark.parametrize("effect", [0.6, 2.5])
-def test_as_many_worlds_as_needed_find_an_effect_as_often_as_asked(design, effect):
-    """By drawing worlds and comparing them as `hedon compare` does: with 4 or 5 pairs it finds nothing."""
+def test_the_number_of_worlds_needed_has_the_power_asked_for(design, effect):
+    """Draws worlds and compares them like `hedon compare`, which finds nothing with 4 or 5 pairs."""
     worlds, rng = worlds_needed(effect, design), np.random.default_rng(2)
     assert worlds is not None
     assert design == "independent" or worlds >= 6
@@ -223,10 +223,10 @@ def test_a_pilot_says_how_many_worlds_are_needed(tmp_path):
     assert apart["needed"] == worlds_needed(4 / apart["sd"], "independent")
     assert pairs["needed"] == worlds_needed(4 / pairs["sd"], "pairs")
     assert pairs["low"] <= pairs["needed"] <= pairs["high"]
-    # Worlds of one seed are alike here, so that four conditions know the spread no better than one.
+    # Worlds with the same seed are similar here, so four conditions estimate the spread no better than one.
     least, most = (apart["sd"] * math.sqrt((SEEDS - 1) / stats.chi2.ppf(q, SEEDS - 1)) for q in (0.975, 0.025))
     assert [apart["low"], apart["high"]] == [worlds_needed(4 / sd, "independent") for sd in (least, most)]
-    assert pairs["needed"] < 8 < 40 < apart["needed"], "worlds of one seed are alike"
+    assert pairs["needed"] < 8 < 40 < apart["needed"], "worlds with the same seed are similar"
     one = table.filter(pl.col("energy.initial") == 8.0).with_columns(cost=pl.col("energy.basic_cost"))
     three = pl.concat([one, one.with_columns(cost=pl.lit(0.5)).filter(pl.col("energy.basic_cost") == 0.001)])
     three.select("seed", "cost", "alive_mean").write_csv(tmp_path / "three.csv")
@@ -271,7 +271,7 @@ def test_worlds_of_a_table_and_of_two_assays_are_pilots(tmp_path):
         (("twice.csv",), "2 worlds have seed 2: keep one row per seed and condition"),
     ],
 )
-def test_what_says_nothing_of_worlds_is_refused(tmp_path, monkeypatch, words, message):
+def test_unusable_pilots_and_options_are_refused(tmp_path, monkeypatch, words, message):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "empty").mkdir()
     (tmp_path / "a.csv").write_text("seed,slope,arm\n1,0.5,1\n2,0.7,2\n3,0.1,3\n")
@@ -299,7 +299,7 @@ def compared(folder: Path, *words: str) -> dict[str, dict]:
 
 @pytest.fixture(scope="module")
 def two_runs(tmp_path_factory) -> Path:
-    """A run of each cost, the second half as long again, with two seeds in common."""
+    """A run for each cost, the second half as long again, with two seeds in common."""
     folder = tmp_path_factory.mktemp("runs")
     for name, cost, seeds, steps in (("cheap", 0.001, (1, 2, 3), 1024), ("dear", 0.004, (2, 3, 4), 1536)):
         config = load_config("baseline", overrides=[*QUICK, f"energy.basic_cost={cost}"])
@@ -362,7 +362,7 @@ def test_conditions_of_a_study_are_compared_and_serve_as_a_pilot(tmp_path, monke
     assert row["sd"] == pytest.approx(np.std([10.0 * seed + seed % 2 for seed in range(1, 7)], ddof=1))
 
 
-def test_frequencies_of_one_seed_are_worlds_of_several_shares(tmp_path):
+def test_shares_at_the_start_are_compared_as_conditions(tmp_path):
     rows = [{"share at the start": share, "seed": seed, "selection": share + seed / 10}
             for share in (0.1, 0.9) for seed in range(1, 7)]  # fmt: skip
     (tmp_path / "rare").mkdir()

@@ -1,4 +1,4 @@
-"""Worlds that are cut at the length of shorter ones are compared as if their records ended there."""
+"""Worlds cut to the length of shorter ones are compared as if their records ended there."""
 
 import json
 
@@ -16,7 +16,7 @@ from hedon.record.reader import open_run
     [("predator", ()), ("baseline", ('birth.mating="pairs"', "birth.kappa=0.01")), ("baseline", ("hazard.kappa=0.1",))],
 )
 def test_a_longer_run_of_the_same_worlds_does_not_differ_where_it_is_cut(preset, settings, tmp_path):
-    """Whatever is known of a world at a step does not depend on what its records hold after it."""
+    """What is known about a world at a step does not depend on later records."""
     config = load_config(preset, overrides=[*QUICK, *settings])
     for name, steps in (("short", 256), ("long", 512)):
         run(RunPlan(config, seeds=(1, 2), steps=steps, out=tmp_path / name))

@@ -1,4 +1,4 @@
-"""Two processes do not make the same batches of a sweep in one folder at once."""
+"""Two processes cannot make the same batches of a sweep in one folder at the same time."""
 
 import signal
 import subprocess
@@ -21,7 +21,7 @@ def command(*words: str | Path) -> list[str]:
     return [sys.executable, "-c", START, *map(str, words)]
 
 
-def test_a_second_process_on_a_folder_is_refused_by_a_sentence(tmp_path):
+def test_a_second_process_on_a_folder_is_refused_with_one_sentence(tmp_path):
     file, place = sweep_file(tmp_path, 200_000), tmp_path / "shared"
     first = subprocess.Popen(command("sweep", "run", file, "--out", place, "--workers", "1"), stdout=subprocess.DEVNULL)
     try:
@@ -39,10 +39,10 @@ def test_a_second_process_on_a_folder_is_refused_by_a_sentence(tmp_path):
     assert f"hedon: {place} is being made by another process" in said, said
     assert said.endswith("wait for it, stop it first, or give each its --part"), said
     with lock(Store(str(place)), (1, 1)):
-        """What a process held, it holds no more when it has ended."""
+        """A process that has ended no longer holds its lock."""
 
 
-def test_parts_go_together_that_have_no_batch_in_common(tmp_path):
+def test_parts_without_a_common_batch_can_run_together(tmp_path):
     store = Store(str(tmp_path / "parts"))
     with lock(store, (3, 10)):
         for other in ((4, 10), (2, 2), (4, 20)):
@@ -55,8 +55,8 @@ def test_parts_go_together_that_have_no_batch_in_common(tmp_path):
         pass
 
 
-def test_a_batch_waits_for_the_process_that_its_killed_sweep_left(tmp_path):
-    """The process of a batch outlives that of its sweep for a moment, and still has its folder."""
+def test_a_batch_waits_for_the_process_left_behind_by_its_killed_sweep(tmp_path):
+    """The process of a batch briefly outlives its sweep, and still holds the lock on its folder."""
     plan, store = planned(sweep_file(tmp_path, 640), str(tmp_path / "left"))
     batch = next(plan.batches())
     task = batch_job(store.location, plan, batch, tmp_path / "left" / WORK / batch.name, 1e9)

@@ -1,6 +1,6 @@
-"""A sweep on a real Ray cluster of two nodes gives the table of one machine, also where a node is killed.
+"""A sweep on a real Ray cluster of two nodes gives the same table as one machine, even if a node is killed.
 
-HEDON_NODES sets how many times a node is killed: each time when its batch has got somewhere else.
+HEDON_NODES sets how many times a node is killed, each time at another step of its batch.
 """
 
 import json
@@ -31,13 +31,13 @@ pytestmark = [
 ]
 KILLS = int(os.environ.get("HEDON_NODES", "1"))
 STEPS = 10_240
-"""Of each world: some seconds."""
+"""Steps of each world, which take a few seconds."""
 NODE = {"num_cpus": 1}
 HEAD = {**NODE, "include_dashboard": False, "include_log_monitor": False, "no_monitor": True}
 
 
 def file_of(folder: Path) -> Path:
-    """Four batches of a world each, whose runs are kept."""
+    """Four batches of one world each, whose runs are kept."""
     file = sweep_file(folder, STEPS, worlds=1)
     file.write_text('keep = ["run"]\n' + file.read_text())
     return file
@@ -89,7 +89,7 @@ def test_a_node_that_dies_costs_no_result(kill, tmp_path, whole, monkeypatch):
                 for name, (process, step) in under_way(place).items():
                     if step < 1024 * (1 + kill % 6) or parent(process) != raylet:
                         continue
-                    os.kill(process, signal.SIGSTOP)  # all that runs on a machine stops at once when it loses power
+                    os.kill(process, signal.SIGSTOP)  # a machine that loses power stops everything at once
                     step = under_way(place).get(name, (0, STEPS))[1]  # it may just have ended
                     if step < STEPS:
                         killed[name] = step
@@ -104,20 +104,20 @@ def test_a_node_that_dies_costs_no_result(kill, tmp_path, whole, monkeypatch):
         finally:
             over.set()
             killer.join()
-    assert killed, "the second node was to have a batch"
+    assert killed, "the second node should have had a batch"
     (name,) = killed
     assert {name: outcome.status for name, outcome in outcomes.items()} == {
         batch.name: "finished" for batch in plan.batches()
     }
     sessions = json.loads((place / RUNS / name / "manifest.json").read_text())["sessions"]
-    assert [session["from_step"] >= killed[name] for session in sessions] == [False, True], "it goes on where it was"
+    assert [session["from_step"] >= killed[name] for session in sessions] == [False, True], "it continues where it was"
     assert_same_table(table_of(store.location), whole)
 
 
 @pytest.mark.long
 def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole, monkeypatch):
-    """As one does that needs more memory than there is; the others are made, and it may be tried again."""
-    monkeypatch.setenv("RAY_ADDRESS", "127.0.0.1:1")  # a local cluster is a new one, whatever else there is
+    """As a world does that needs too much memory; the others finish, and it can be tried again."""
+    monkeypatch.setenv("RAY_ADDRESS", "127.0.0.1:1")  # a local cluster is always a new one
     plan, store = planned(file_of(tmp_path), str(tmp_path / "ray"))
     doomed, killed, over = next(plan.batches()).name, set[int](), threading.Event()
 
@@ -136,7 +136,7 @@ def test_a_world_that_takes_its_process_down_is_given_up(tmp_path, whole, monkey
     finally:
         over.set()
         killer.join()
-    assert TRIES <= len(killed) <= TRIES + 1, "once more where it left its first checkpoint"
+    assert TRIES <= len(killed) <= TRIES + 1, "once more if it left its first checkpoint"
     assert {outcome.status for name, outcome in outcomes.items() if name != doomed} == {"finished"}
     assert outcomes[doomed].status == "failed"
     assert f"lost {TRIES} times in a row" in outcomes[doomed].fault

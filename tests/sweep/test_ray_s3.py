@@ -1,6 +1,6 @@
-"""A sweep on Ray whose place is an S3 server: a node is killed, and the table is that of one machine.
+"""A sweep on Ray, stored on an S3 server: a node is killed, and the table is the same as from one machine.
 
-Nothing is shared but the server: what a killed node had goes on elsewhere from the state that it sent.
+Only the server is shared: the batch of a killed node continues elsewhere from the state that the node sent.
 """
 
 import json
@@ -35,7 +35,7 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def port() -> Iterator[int]:
-    """Where a server of this machine listens."""
+    """The port of an S3 server on this machine."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         found = free.getsockname()[1]
@@ -47,7 +47,7 @@ def port() -> Iterator[int]:
 
 @pytest.fixture
 def url(port: int, monkeypatch: pytest.MonkeyPatch) -> str:
-    """A place on the server, which all that reads the environment finds."""
+    """A place on the server, which every process with this environment can find."""
     use_server(port, monkeypatch)
     lab = f"lab-{secrets.token_hex(8)}"
     import_module("s3fs").S3FileSystem(skip_instance_cache=True).mkdir(lab)
@@ -55,12 +55,12 @@ def url(port: int, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def made_on(raylet: int) -> dict[Path, int]:
-    """The process of each batch that a node makes, by the folder of its run, which is of that machine alone."""
+    """The process of each batch that a node makes, by the folder of its run, which is local to that machine."""
     found = {}
     for lock in Path(gettempdir()).glob("hedon-sweep-*/*/.lock"):
         try:
             process = json.loads(lock.read_text())["process"]
-        except (OSError, ValueError):  # it has just begun, or ended
+        except (OSError, ValueError):  # it has just started or ended
             continue
         if parent(process) == raylet:
             found[lock.parent] = process
@@ -84,7 +84,7 @@ def test_a_node_that_dies_costs_no_result_of_a_sweep_on_s3(kill, url, tmp_path, 
                 sent = {name.removesuffix(".zip") for name in watched.names(STATE)}
                 for folder, process in made_on(raylet).items():
                     if folder.name in sent:
-                        os.kill(process, signal.SIGSTOP)  # all that runs on a machine stops at once
+                        os.kill(process, signal.SIGSTOP)  # everything on a machine stops at once
                         killed.append(folder.name)
                         cluster.remove_node(node, allow_graceful=False)
                         os.kill(process, signal.SIGKILL)
@@ -98,7 +98,7 @@ def test_a_node_that_dies_costs_no_result_of_a_sweep_on_s3(kill, url, tmp_path, 
         finally:
             over.set()
             killer.join()
-    assert killed, "the second node was to have a batch whose state was sent"
+    assert killed, "the second node should have had a batch whose state was sent"
     assert {name: outcome.status for name, outcome in outcomes.items()} == {
         batch.name: "finished" for batch in plan.batches()
     }

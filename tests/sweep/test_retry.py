@@ -1,4 +1,4 @@
-"""A batch whose process is lost again and again is given up, unless it gets further."""
+"""A batch whose process is lost again and again is given up, unless it makes progress."""
 
 import io
 import zipfile
@@ -12,7 +12,7 @@ from hedon.ensemble.store import Store
 
 
 def write_checkpoint(store: Store, task: BatchJob, step: int) -> None:
-    """What a batch leaves where it is kept: a file in its folder, or an archive behind a URL."""
+    """Writes the checkpoint of a batch: a file in its folder, or an archive at a URL."""
     name = f"checkpoints/step-{step:010d}.npz"
     if store.folder is not None:
         (task.folder / "checkpoints").mkdir(parents=True, exist_ok=True)
@@ -25,7 +25,7 @@ def write_checkpoint(store: Store, task: BatchJob, step: int) -> None:
 
 
 @pytest.mark.parametrize("kind", ["folder", "url"])
-def test_a_batch_is_given_up_where_it_gets_no_further(tmp_path, kind):
+def test_a_batch_is_given_up_if_it_makes_no_progress(tmp_path, kind):
     plan, store = planned(sweep_file(tmp_path), str(tmp_path / "place") if kind == "folder" else f"file://{tmp_path}/x")
     one, other = (batch_job(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches())
     retries = RetryLimit()

@@ -1,4 +1,4 @@
-"""A sweep behind a URL, on a real S3 server of this machine.
+"""A sweep at a URL, on a real S3 server on this machine.
 
 The server is s3s-fs: `cargo install s3s-fs --version 0.11.1 --features binary --locked`.
 """
@@ -31,7 +31,7 @@ from hedon.ensemble.store import PASSING, Store
 SERVER = shutil.which("s3s-fs") or shutil.which("s3s-fs", path=str(Path.home() / ".cargo" / "bin"))
 STEPS = 5_120
 SMALL, LARGE = 3_000_000, 105_000_000
-"""Sizes of contents that arrive in one request, and in parts [byte]."""
+"""Sizes of contents that are sent in one request and in parts [byte]."""
 DYING = """
 import os, signal, socket, sys
 import s3fs
@@ -61,7 +61,7 @@ s3fs.S3FileSystem._call_s3 = called
 socket.socket.send = send_some
 socket.socket.sendmsg = lambda self, parts, *rest: send_some(self, next(filter(len, parts), b""))
 """
-"""Ends this process by SIGKILL at a place of the talk with the server."""
+"""Ends this process by SIGKILL at a given point of its exchange with the server."""
 WRITER = """
 from hedon.ensemble.store import Store
 
@@ -97,7 +97,7 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory) -> Iterator[Path]:
-    """The folder of a server with a bucket "lab", which all that reads the environment finds."""
+    """The folder of a server with a bucket "lab", which every process with this environment can find."""
     assert SERVER is not None
     root = tmp_path_factory.mktemp("server")
     (root / "lab").mkdir()
@@ -124,14 +124,14 @@ def server(tmp_path_factory) -> Iterator[Path]:
 
 @pytest.fixture
 def bucket(server, tmp_path) -> str:
-    """The URL of a place on the server, another for each test."""
+    """The URL of a place on the server, different for each test."""
     return f"s3://lab/{tmp_path.name}"
 
 
 def run_dying(program: str, *words: str | Path) -> None:
-    """Runs a program that ends by SIGKILL at its place."""
+    """Runs a program that ends itself by SIGKILL at its given point."""
     done = subprocess.run([sys.executable, "-c", DYING + program, *map(str, words)], timeout=300)
-    assert done.returncode == -signal.SIGKILL, "it was to get to the place where it is killed"
+    assert done.returncode == -signal.SIGKILL, "it should have reached the point where it is killed"
 
 
 @pytest.mark.parametrize(
@@ -146,8 +146,8 @@ def run_dying(program: str, *words: str | Path) -> None:
         ("after complete_multipart_upload", LARGE, False, 1),
     ],
 )
-def test_a_writer_that_is_killed_leaves_nothing_that_reads_as_whole(server, bucket, place, size, named, left):
-    """At each place of its talk with the server; what has a name then has all of its old or its new content."""
+def test_a_killed_writer_leaves_nothing_that_reads_as_complete(server, bucket, place, size, named, left):
+    """At each point of its exchange with the server, a name has either the whole old or the whole new content."""
     store = Store(bucket)
     store.write("results/one", b"old")
     run_dying(WRITER, place, str(size // 2), bucket)
@@ -155,7 +155,7 @@ def test_a_writer_that_is_killed_leaves_nothing_that_reads_as_whole(server, buck
     assert store.read("results/one") == (content if named else b"old")
     assert store.names("results") == ["one"]
     passing = list((server / bucket.removeprefix("s3://")).rglob(f"{PASSING}*-one"))
-    assert len(passing) == left, "it was to be killed elsewhere"
+    assert len(passing) == left, "it should have been killed at another point"
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ def test_a_writer_that_is_killed_leaves_nothing_that_reads_as_whole(server, buck
         ("after results", (1, 1, 1)),
     ],
 )
-def test_a_batch_that_is_killed_at_any_place_is_made_by_another(bucket, tmp_path, place, kept):
+def test_a_batch_killed_at_any_point_is_made_by_another_process(bucket, tmp_path, place, kept):
     file = sweep_file(tmp_path, STEPS, seeds=1)
     file.write_text('keep = ["agents", "run"]\n' + file.read_text())
     plan, store = planned(file, str(tmp_path / "folder"))
@@ -190,5 +190,5 @@ def test_two_processes_that_make_one_sweep_harm_no_row(bucket, tmp_path):
     assert_two_make_one(bucket, tmp_path)
 
 
-def test_a_sweep_on_s3_goes_on_elsewhere_and_gives_the_table_of_a_folder(bucket, tmp_path):
+def test_a_sweep_on_s3_continues_elsewhere_and_gives_the_same_table_as_in_a_folder(bucket, tmp_path):
     assert_goes_on_elsewhere(bucket, tmp_path, STEPS)

@@ -1,4 +1,4 @@
-"""The script for Slurm runs a sweep on a real Slurm of one node, as `apt-get install slurm-wlm munge` brings it."""
+"""The script for Slurm runs a sweep on a real one-node Slurm, installed by `apt-get install slurm-wlm munge`."""
 
 import json
 import os
@@ -32,7 +32,7 @@ pytestmark = [
 ]
 
 STEPS = 20_480
-"""Of each world: some seconds."""
+"""Steps of each world, which take a few seconds."""
 CONFIG = """\
 ClusterName=hedon
 SlurmctldHost={host}(127.0.0.1)
@@ -70,7 +70,7 @@ def free_port() -> int:
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory) -> Iterator[Path]:
-    """A folder with the logs of a Slurm that runs for these tests."""
+    """The folder with the logs of a Slurm started for these tests."""
     with pytest.MonkeyPatch.context() as monkeypatch:
         yield from run_slurm(tmp_path_factory.mktemp("slurm"), monkeypatch)
 
@@ -130,7 +130,7 @@ def file_of(folder: Path) -> Path:
 
 
 def begin(cluster: Path, folder: Path) -> tuple[Path, Path]:
-    """Submits the script of two tasks that make a sweep; the script and the sweep's folder, when both are under way."""
+    """Submits the script of a sweep with two tasks; returns script and sweep folder once both tasks are under way."""
     place = folder / "shared place"
     words = ["sweep", "run", str(file_of(folder)), "--slurm", "--out", str(place), "--jobs", "2", "--hours", "1"]
     done = CliRunner().invoke(app, [*words, "--checkpoint", "0"])
@@ -167,9 +167,9 @@ def sessions(place: Path) -> list[list[dict]]:
     return [json.loads(path.read_text())["sessions"] for path in sorted((place / RUNS).glob("*/manifest.json"))]
 
 
-def test_tasks_that_run_out_of_time_save_where_they_are(cluster, tmp_path, whole):
+def test_tasks_that_run_out_of_time_save_their_state(cluster, tmp_path, whole):
     script, place = begin(cluster, tmp_path)
-    # What Slurm does where the time of a task is nearly over.
+    # What Slurm does when the time of a task is nearly over.
     subprocess.run(["scancel", "--signal=TERM", "--batch", "--name", "hedon-small"], check=True)
     wait_for("both tasks have ended", queue_is_empty)
     told = logs(cluster, f"{tmp_path.name}-first")
@@ -179,15 +179,15 @@ def test_tasks_that_run_out_of_time_save_where_they_are(cluster, tmp_path, whole
     wait_for("the rest is made", queue_is_empty)
     assert all("All done" in text for text in logs(cluster, f"{tmp_path.name}-second"))
     for first, second in sessions(place):
-        assert first["ended"] is not None, "it ended in good order"
+        assert first["ended"] is not None, "it shut down cleanly"
         assert second["from_step"] > 0
     assert_same_table(table_of(str(place)), whole)
 
 
-def test_tasks_that_are_killed_go_on_from_their_checkpoints(cluster, tmp_path, whole):
+def test_killed_tasks_continue_from_their_checkpoints(cluster, tmp_path, whole):
     script, place = begin(cluster, tmp_path)
     batches = [process for process, _ in under_way(place).values()]
-    for process in batches:  # so that none sees that the task's first process is gone, and ends in good order
+    for process in batches:  # so that none notices the loss of the task's first process and shuts down cleanly
         os.kill(process, signal.SIGSTOP)
     subprocess.run(["scancel", "--signal=KILL", "--full", "--name", "hedon-small"], check=True)
     for process in batches:
@@ -198,13 +198,13 @@ def test_tasks_that_are_killed_go_on_from_their_checkpoints(cluster, tmp_path, w
     wait_for("the rest is made", queue_is_empty)
     assert all("All done" in text for text in logs(cluster, f"{tmp_path.name}-second"))
     for first, second in sessions(place):
-        assert first["ended"] is None, "it had no time to end in good order"
+        assert first["ended"] is None, "it had no time to shut down cleanly"
         assert second["from_step"] > 0
     assert_same_table(table_of(str(place)), whole)
 
 
-def test_tasks_that_are_requeued_go_on_by_themselves(cluster, tmp_path, whole):
-    """As Slurm does itself where a node fails, or where a job of more weight needs it."""
+def test_requeued_tasks_continue_by_themselves(cluster, tmp_path, whole):
+    """Slurm itself requeues tasks when a node fails or a job of higher priority needs it."""
     _, place = begin(cluster, tmp_path)
     jobs = subprocess.run(["squeue", "-h", "-o", "%F"], capture_output=True, text=True, check=True).stdout.split()
     subprocess.run(["scontrol", "requeue", *set(jobs)], check=True)

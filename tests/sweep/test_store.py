@@ -1,4 +1,4 @@
-"""Where a sweep lives: what is written is whole or not there, and URLs are places like folders."""
+"""Where a sweep is stored: contents are complete or absent, and URLs work like folders."""
 
 import sys
 from types import SimpleNamespace
@@ -32,7 +32,7 @@ def test_contents_are_kept_by_name(store):
 
 
 def test_a_content_that_is_being_written_has_no_name(tmp_path, monkeypatch):
-    """A writer that ends between writing and naming leaves what no reader sees."""
+    """A writer that dies between writing and naming leaves only what no reader sees."""
     store = Store(f"file://{tmp_path}")
     store.write("a/b", b"old")
 
@@ -52,8 +52,8 @@ def test_a_content_that_is_being_written_has_no_name(tmp_path, monkeypatch):
     ("fault", "breaks", "tries"),
     [("cut off", TRIES - 1, TRIES), ("cut off", TRIES, TRIES), ("of two", TRIES - 1, TRIES), ("no server", 1, 1)],
 )
-def test_what_does_not_arrive_whole_is_read_again(fault, breaks, tries, tmp_path, monkeypatch):
-    """So is that of which parts of two arrive. Nothing else is: a library itself tries for seconds."""
+def test_an_incomplete_content_is_read_again(fault, breaks, tries, tmp_path, monkeypatch):
+    """So is a mixture of two contents. Other errors are not retried, since libraries already retry for seconds."""
     store = Store(f"memory://{tmp_path}")
     store.write("a", b"whole")
     cat_file, asked = store._system.cat_file, []
@@ -78,10 +78,10 @@ def test_what_does_not_arrive_whole_is_read_again(fault, breaks, tries, tmp_path
 
 
 class DriverError(Exception):
-    """What a library of an object store raises where its server or its keys are missing: no OSError."""
+    """What an object-store library raises if its server or its keys are missing; it is not an OSError."""
 
 
-def test_errors_of_any_kind_of_a_place_are_one_message(tmp_path, monkeypatch):
+def test_any_error_of_a_place_becomes_one_message(tmp_path, monkeypatch):
     store = Store(f"file://{tmp_path}")
     assert isinstance(store, Store)
 
@@ -101,7 +101,7 @@ def test_errors_of_any_kind_of_a_place_are_one_message(tmp_path, monkeypatch):
             ask()
 
 
-def test_a_state_that_is_damaged_is_as_none(tmp_path):
+def test_a_damaged_state_is_ignored(tmp_path):
     url = f"file://{tmp_path}/far"
     plan, store = planned(sweep_file(tmp_path, 128, seeds=1), url)
     (batch, *_) = plan.batches()
@@ -110,7 +110,7 @@ def test_a_state_that_is_damaged_is_as_none(tmp_path):
     assert store.names(STATE) == []
 
 
-def test_a_sweep_behind_a_url_goes_on_elsewhere(tmp_path):
+def test_a_sweep_at_a_url_continues_elsewhere(tmp_path):
     assert_goes_on_elsewhere(f"file://{tmp_path}/far", tmp_path, 5_120)
 
 
@@ -120,6 +120,6 @@ def test_two_processes_that_make_one_sweep_harm_no_row(tmp_path):
     assert_two_make_one(f"file://{tmp_path}/far", tmp_path, one_batch)
 
 
-def test_a_url_of_no_kind_is_refused():
+def test_a_url_of_an_unknown_kind_is_refused():
     with pytest.raises(HedonError, match="nosuch://x"):
         Store("nosuch://x/y")

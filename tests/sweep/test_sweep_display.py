@@ -16,7 +16,7 @@ from hedon.experiment.plan import Moment
 
 @pytest.mark.parametrize("terminal", [False, True])
 def test_progress_and_speed_are_shown_with_moments_and_without(tmp_path, terminal):
-    """A batch of another process tells its moments; one of a cluster only its end."""
+    """A batch in another process reports its progress; one on a cluster only its end."""
     plan, store = planned(sweep_file(tmp_path, 1000), str(tmp_path / "place"))
     jobs = [batch_job(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
     told, untold = jobs
@@ -27,14 +27,14 @@ def test_progress_and_speed_are_shown_with_moments_and_without(tmp_path, termina
         display.end(told, Outcome("failed", "it broke"))
         display.end(untold, Outcome("finished"))
     text = stream.getvalue()
-    lines = "".join(text.split())  # a long name of a folder goes on in the next line
+    lines = "".join(text.split())  # a long folder name wraps to the next line
     assert "30.0 %, 0 of 2 runs done" in text, "both worlds of the first are at step 600"
     assert re.search(r"[1-9][\d,]* world-steps/s, .* left", text)
     assert "basic_cost=0.001,seeds1-2:failed,step600,itbroke" in lines
     assert "basic_cost=0.01,seeds1-2:finished" in lines
 
 
-def test_a_world_has_died_out_where_no_species_is_left(tmp_path):
+def test_a_world_has_died_out_if_no_species_is_left(tmp_path):
     plan, store = planned(sweep_file(tmp_path, 1000), str(tmp_path / "place"))
     job = batch_job(store.location, plan, next(plan.batches()), tmp_path / "batch", 1.0)
     rows = tuple({"alive": alive} for alive in (0, 5, 0, 0))  # two worlds of two species
@@ -48,19 +48,19 @@ def test_a_world_has_died_out_where_no_species_is_left(tmp_path):
     assert "died out / 5 / died out / died out alive" in stream.getvalue()
 
 
-def test_the_start_of_the_workers_does_not_count_into_the_time_that_is_left(tmp_path, monkeypatch):
+def test_the_start_of_the_workers_does_not_count_toward_the_time_left(tmp_path, monkeypatch):
     now = [100.0]
     monkeypatch.setattr("hedon.cli.display.job.time.monotonic", lambda: now[0])
     plan, store = planned(sweep_file(tmp_path, 1000), str(tmp_path / "place"))
     jobs = [batch_job(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
     stream = io.StringIO()
     with JobDisplay(Console(file=stream, width=200), jobs) as display:
-        now[0] += 50  # they start
+        now[0] += 50  # the workers start
         display.update(jobs[0], Moment(0, 500, 1000, 2.0, ({"alive": 7}, {"alive": 5}), (None, None), 64))
     assert "25.0 %, 0 of 2 runs done, 500 world-steps/s, 6 s left" in stream.getvalue()
 
 
-def test_many_that_tell_no_moments_have_a_speed_and_are_not_told_one_by_one(tmp_path):
+def test_many_batches_without_progress_have_a_speed_and_are_not_listed_one_by_one(tmp_path):
     costs = f'[factor]\n"energy.basic_cost" = {[i / 1e4 for i in range(1, 31)]}\n'
     plan, store = planned(sweep_file(tmp_path, 1000, seeds=1, rest=costs), str(tmp_path / "place"))
     jobs = [batch_job(store.location, plan, batch, tmp_path / batch.name, 1.0) for batch in plan.batches()]
@@ -75,7 +75,7 @@ def test_many_that_tell_no_moments_have_a_speed_and_are_not_told_one_by_one(tmp_
     assert lines[2:] == [f"{jobs[-1].label}: failed, it broke"]
 
 
-def test_batches_are_told_by_what_they_are_in_names_as_short_as_tell_apart():
+def test_batches_are_described_by_their_settings_in_the_shortest_distinct_names():
     assert describe({"energy.basic_cost": 0.002, "preset": "poor"}, (4,)) == 'basic_cost=0.002, preset="poor", seed 4'
     same = {"food.normal.growth_rate": 0.5, "food.poison.growth_rate": 2}
     assert describe(same, (1, 2, 3, 9)) == "normal.growth_rate=0.5, poison.growth_rate=2, seeds 1-3,9"

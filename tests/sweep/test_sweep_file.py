@@ -1,4 +1,4 @@
-"""The file of a sweep: what it gives, and what is said of a wrong one."""
+"""The file of a sweep: what it yields, and the messages for an invalid one."""
 
 from pathlib import Path
 
@@ -52,7 +52,7 @@ def test_zipped_factors_go_together_and_are_crossed_with_the_rest(tmp_path):
     ]  # fmt: skip
 
 
-def test_ranges_are_evenly_apart_also_in_the_logarithm(tmp_path):
+def test_ranges_are_evenly_spaced_also_on_a_log_scale(tmp_path):
     found = settings(
         tmp_path,
         '[factor]\n"energy.action_cost" = { log = [1e-6, 1e-4], count = 3 }\n'
@@ -66,7 +66,7 @@ def test_ranges_are_evenly_apart_also_in_the_logarithm(tmp_path):
 
 @pytest.mark.parametrize("draw", ["latin", "sobol"])
 def test_drawn_values_fill_their_ranges(draw, tmp_path):
-    """Of 16 points each sixteenth of each range has one: so both laws promise, a Latin hypercube by its definition."""
+    """Of 16 points, each sixteenth of each range has one; both designs guarantee it, Latin hypercubes by definition."""
     text = ('[factor]\n"energy.initial" = { range = [2.0, 6.0] }\n"energy.action_cost" = { log = [1e-6, 1e-4] }\n'
             f'"birth.kappa" = [0.1, 0.2]\n[design]\ndraw = "{draw}"\npoints = 16\n')  # fmt: skip
     found = settings(tmp_path, text)
@@ -124,20 +124,20 @@ def test_a_wrong_file_is_refused_with_place_and_remedy(text, tmp_path):
     assert "a.toml" in str(error.value)
 
 
-def test_all_problems_are_told_at_once(tmp_path):
+def test_all_problems_are_reported_at_once(tmp_path):
     with pytest.raises(ConfigError) as error:
         read(tmp_path, 'steps = 0\nseeds = "x"\nworlds = -1\n')
     assert len(error.value.problems) == 3
 
 
-def test_a_misspelled_factor_is_told_once(tmp_path):
+def test_a_misspelled_factor_is_reported_once(tmp_path):
     with pytest.raises(ConfigError) as error:
         read(tmp_path, 'steps = 64\n[factor]\n"energy.basic_csot" = [0.1, 0.2, 0.3]\n')
     assert str(error.value).count("basic_csot") == 1
     assert "did you mean basic_cost?" in str(error.value)
 
 
-def test_a_base_file_is_found_beside_the_sweep(tmp_path):
+def test_a_base_file_is_found_next_to_the_sweep(tmp_path):
     (tmp_path / "own.toml").write_text('preset = "small"\n[energy]\ninitial = 3.5\n')
     found = read(tmp_path, 'steps = 64\nbase = "own.toml"\n')
     assert condition_configs(found)[0].species["agent"].energy.initial == 3.5

@@ -1,4 +1,4 @@
-"""A large sweep is planned by what its conditions change, and its results are read side by side."""
+"""A large sweep is planned from what its conditions change, and its results are read concurrently."""
 
 import json
 import threading
@@ -22,8 +22,8 @@ COUNT = 2_000
 COSTS = f'[factor]\n"energy.basic_cost" = {{ log = [1e-4, 1e-2], count = {COUNT // 2} }}\n"energy.initial" = [8, 9.5]\n'
 
 
-def test_a_condition_costs_a_part_of_loading_its_config(tmp_path):
-    """By processor time, so that a busy machine changes both; `python -m benchmarks.sweep` has the numbers."""
+def test_a_condition_costs_a_fraction_of_loading_its_config(tmp_path):
+    """Measured in processor time, so a busy machine affects both; `python -m benchmarks.sweep` has the numbers."""
     path = sweep_file(tmp_path, rest=COSTS)
     loader = Loader(path, "baseline", None, [])
     begun = time.process_time()
@@ -69,7 +69,7 @@ def test_conditions_are_the_configs_that_a_run_would_load(name, tmp_path):
         assert RunPlan(config, [1], 64, tmp_path).config == config
 
 
-def test_settings_that_cannot_be_are_listed_and_refused_or_left_out(tmp_path):
+def test_invalid_settings_are_listed_and_refused_or_left_out(tmp_path):
     path = tmp_path / "some.toml"
     path.write_text(
         'steps = 64\n[factor]\n"population.initial_count" = [50, 150, 250]\n"population.capacity" = [100, 200]\n'
@@ -88,8 +88,8 @@ def test_settings_that_cannot_be_are_listed_and_refused_or_left_out(tmp_path):
         read_sweep(path, skip_invalid=True)
 
 
-def test_results_are_read_side_by_side(tmp_path, monkeypatch):
-    """As many as there are readers: each waits until all of them are under way."""
+def test_results_are_read_concurrently(tmp_path, monkeypatch):
+    """As many at once as there are readers: each read waits until all of them have started."""
     count = 3 * READERS
     costs = f'[factor]\n"energy.basic_cost" = {{ range = [0.1, 0.2], count = {count} }}\n'
     plan, store = planned(sweep_file(tmp_path, seeds=1, rest=costs), str(tmp_path / "place"))

@@ -1,4 +1,4 @@
-"""A sweep over rules in Python: named relative to its file, and kept where it lives."""
+"""A sweep over rules in Python, which are named relative to its file and stored with the sweep."""
 
 import shutil
 
@@ -40,7 +40,7 @@ def test_a_sweep_keeps_the_rules_that_its_file_names(tmp_path, monkeypatch):
         own = plan.conditions[0]
         first = load_config_of(store, own.digest, own.base, plan.changes(own))
         assert first.species["agent"].reward.rule == f"my.py:once@{load_rules(store, first)[0].digest}"
-        if name == "second":  # the plan needs the files no more
+        if name == "second":  # the plan no longer needs the files
             shutil.rmtree(home)
         for batch in plan.batches():
             task = batch_job(store.location, plan, batch, tmp_path / name / "work" / batch.name, 1e9)
@@ -53,6 +53,6 @@ def test_a_sweep_keeps_the_rules_that_its_file_names(tmp_path, monkeypatch):
         load_rules(store, first)
 
 
-def test_a_rule_that_is_not_there_is_named(tmp_path):
+def test_a_missing_rule_is_named(tmp_path):
     with pytest.raises(ConfigError, match=rf"cannot read {tmp_path}/rules/my\.py: No such file"):
         read_sweep(sweep_file(tmp_path, 96, rest=FACTORS))

@@ -28,7 +28,7 @@ from hedon.sweep.read import read_sweep
 
 START = "from hedon.cli.start import main; main()"
 STEPS = 6_400
-"""Of each world: some seconds."""
+"""Steps of each world, which take a few seconds."""
 
 
 def make_all(location: str, file: Path) -> pl.DataFrame:
@@ -44,7 +44,7 @@ def command(*words: str | Path) -> subprocess.Popen:
     return subprocess.Popen([sys.executable, "-c", START, *map(str, words)], start_new_session=True)
 
 
-def test_a_killed_sweep_goes_on_to_the_same_table(tmp_path):
+def test_a_killed_sweep_continues_to_the_same_table(tmp_path):
     """Killed by SIGKILL with all its processes, in the middle of its first batch."""
     file = sweep_file(tmp_path, STEPS)
     whole = make_all(str(tmp_path / "whole"), file)
@@ -59,7 +59,7 @@ def test_a_killed_sweep_goes_on_to_the_same_table(tmp_path):
     os.kill(worker, signal.SIGKILL)
     os.killpg(begun.pid, signal.SIGKILL)
     begun.wait()
-    assert not list((place / RESULTS).glob("*")), "it was to be killed before its first result"
+    assert not list((place / RESULTS).glob("*")), "it should have been killed before its first result"
     plan, store = load_plan(Store(str(place))), Store(str(place))
     assert 0 < max(sweep_status(plan, store).begun.values()) < 1
     outcomes = run_sweep(plan, store, 1e9, 2)
@@ -91,7 +91,7 @@ def test_worlds_that_die_out_have_a_row(tmp_path):
     assert gone["alive"].to_list() == [0, 0]
 
 
-def test_what_is_asked_for_is_kept(tmp_path):
+def test_requested_records_are_kept(tmp_path):
     file = sweep_file(tmp_path, seeds=1)
     file.write_text('keep = ["agents", "population", "run"]\n' + file.read_text())
     place = tmp_path / "kept"
@@ -104,7 +104,7 @@ def test_what_is_asked_for_is_kept(tmp_path):
 
 
 def test_a_batch_that_fails_harms_no_other_and_is_tried_again(tmp_path):
-    """Presets are bases of their own, and the config of one is broken."""
+    """Each preset has its own base config, and one of them is broken."""
     place, presets = tmp_path / "fails", '[factor]\npreset = ["baseline", "small"]\n'
     file = sweep_file(tmp_path, 64, seeds=1, rest=presets)
     plan, store = planned(file, str(place))
@@ -145,7 +145,7 @@ def results(place: Path) -> dict[str, int]:
     return {path.name: path.stat().st_mtime_ns for path in (place / RESULTS).iterdir()}
 
 
-def test_a_sweep_grows_by_seeds_and_values_and_makes_what_is_missing_alone(tmp_path):
+def test_a_sweep_grows_by_seeds_and_values_and_makes_only_what_is_missing(tmp_path):
     few = '[factor]\n"energy.basic_cost" = [0.001, 0.01]\n'
     more = '[factor]\n"energy.basic_cost" = [0.005, 0.01, 0.001]\n'
     place = tmp_path / "grown"
@@ -156,15 +156,15 @@ def test_a_sweep_grows_by_seeds_and_values_and_makes_what_is_missing_alone(tmp_p
     assert_same_table(grown, make_all(str(tmp_path / "whole"), sweep_file(tmp_path, 96, seeds=5, rest=more)))
     assert grown.height == 15
     plan, store = planned(sweep_file(tmp_path, 96, seeds=1, rest=few), str(place))
-    assert not (place / "table.parquet").exists(), "it was of what was wanted before"
+    assert not (place / "table.parquet").exists(), "it was the table of the earlier sweep"
     assert open_batches(plan, store) == []
     assert table_of(str(place))["energy.basic_cost"].to_list() == [0.001, 0.01]
     again, store = planned(sweep_file(tmp_path, 96, seeds=5, rest=more), str(place))
-    assert open_batches(again, store) == [], "what is made stays"
+    assert open_batches(again, store) == [], "finished batches are kept"
 
 
 @pytest.mark.long
-def test_a_sweep_that_grows_while_it_runs_is_made_whole(tmp_path):
+def test_a_sweep_that_grows_while_it_runs_is_completed(tmp_path):
     place, small = tmp_path / "running", sweep_file(tmp_path, 3_200, seeds=1)
     begun = command("sweep", "run", small, "--out", place, "--workers", "1")
     until = time.monotonic() + 300
@@ -176,8 +176,8 @@ def test_a_sweep_that_grows_while_it_runs_is_made_whole(tmp_path):
     assert table_of(str(place)).height == 4
 
 
-def test_a_task_is_as_small_in_a_large_sweep(tmp_path):
-    """A cluster is given one for each batch."""
+def test_a_task_is_no_larger_in_a_large_sweep(tmp_path):
+    """A cluster receives one for each batch."""
     many = f'[factor]\n"energy.basic_cost" = {[i / 1e6 for i in range(500)]}\n'
     sizes = []
     for name, rest in (("few", FACTORS), ("many", many)):
@@ -234,7 +234,7 @@ def said(*words: str) -> str:
     return done.output
 
 
-def test_a_script_for_slurm_has_a_task_for_each_batch_at_most(tmp_path):
+def test_a_script_for_slurm_has_at_most_one_task_per_batch(tmp_path):
     place = tmp_path / "a sweep"
     words = ["sweep", "run", str(sweep_file(tmp_path)), "--slurm", "--out", str(place)]
     refused = CliRunner().invoke(app, [*words, "--ray", "local"])
