@@ -1,4 +1,4 @@
-"""Who has a child, with whom, where, and what it gets."""
+"""Which agents have a child, with whom and where, and what the child gets."""
 
 import math
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from reference.state import Agent, Newborn, Turn, World
 
 
 def is_free(rules: Rules, world: World, x: float, y: float, radius: float) -> bool:
-    """Whether a disc is inside, and touches no living agent and no food."""
+    """Whether a disc is inside the arena and touches no living agent and no food."""
     agents = ((agent.x, agent.y, rules.of(agent).body.radius) for agent in world.agents)
     foods = ((fx, fy, rules.food_radius) for stock in world.stocks for fx, fy in stock.foods)
     return (
@@ -23,7 +23,7 @@ def is_free(rules: Rules, world: World, x: float, y: float, radius: float) -> bo
 
 
 def breed(rules: Rules, world: World, turns: list[Turn], has_given: Callable[[Turn], None]) -> None:
-    """Those whose draw made them parents have their turn in random order. `has_given` is told who gave energy."""
+    """Lets those drawn as parents breed, in random order. `has_given` is called with each that gave energy."""
     for agent in world.agents:
         agent.births = 0
     here = {agent.agent_id for agent in world.agents}
@@ -53,7 +53,7 @@ def breed(rules: Rules, world: World, turns: list[Turn], has_given: Callable[[Tu
 
 
 def find_mate(rules: Rules, world: World, turn_of: dict[int, Turn], parent: Agent) -> Agent | None:
-    """The nearest of its species that waits within range; of equally near ones the oldest."""
+    """The nearest waiting agent of its species within range; of equally near ones, the oldest."""
     species = rules.of(parent)
     waiting = [
         turn.agent
@@ -130,7 +130,7 @@ def child_heading(rules: Rules, world: World, child_id: int) -> float:
 
 
 def child_genome(rules: Rules, world: World, parents: list[Agent], before: np.ndarray) -> np.ndarray:
-    """The genome of the next child. Where newborns inherit late, it has that which its slot had `before`."""
+    """The genome of the next child. If newborns inherit late, it is the one that was in its slot `before`."""
     first, species, child_id = parents[0], rules.of(parents[0]), world.next_agent_id
     if rules.inherits_late:
         among = [newborn.agent_id for newborn in world.newborns]
@@ -141,7 +141,7 @@ def child_genome(rules: Rules, world: World, parents: list[Agent], before: np.nd
 
 
 def next_genome(rules: Rules, world: World, parents: list[Agent]) -> np.ndarray:
-    """The genome of the next child where it inherits at birth."""
+    """The genome of the next child if it inherits at birth."""
     first, species, child_id = parents[0], rules.of(parents[0]), world.next_agent_id
     genome = first.genome
     if len(parents) == 2:
@@ -150,7 +150,7 @@ def next_genome(rules: Rules, world: World, parents: list[Agent]) -> np.ndarray:
 
 
 def open_window(rules: Rules, world: World) -> None:
-    """Newborns that waited inherit; births are counted from 0, and taken slots are old."""
+    """Waiting newborns inherit, births are counted from 0 again, and occupied slots become resident slots."""
     for index, newborn in enumerate(world.newborns):
         parent = newborn.genome if newborn.parent < 0 else world.newborns[newborn.parent].genome
         species: Species = rules.species[newborn.species]

@@ -1,4 +1,4 @@
-"""How likely an agent dies or has a child, and factors that follow time."""
+"""How likely an agent is to die or to have a child, and factors that change with time."""
 
 import math
 from collections.abc import Mapping
@@ -9,7 +9,7 @@ from reference.state import Agent
 
 
 def factor_at(schedules: Mapping[str, Any], name: str, step: int) -> float:
-    """The factor of a schedule in a step, 1 where there is none."""
+    """The factor of a schedule in a step, or 1 if there is none."""
     if name not in schedules or not schedules[name].points:
         return 1.0
     schedule = schedules[name]
@@ -32,7 +32,7 @@ def by_store(hazard: Any, store: float) -> float:
 
 
 def death_chance(species: Species, agent: Agent, step: int) -> float:
-    """Of dying at the end of this step; its age counts this step."""
+    """The chance of dying at the end of this step; the age includes this step."""
     hazard, age = species.hazard, step + 1 - agent.birth_step
     by_stores = (store.hazard_weight * by_store(hazard, agent.held[name]) for name, store in species.stores.items())
     by_age = hazard.alpha_age * math.exp(hazard.beta_age * age)
@@ -48,5 +48,5 @@ def birth_chance(species: Species, agent: Agent) -> float:
 
 
 def harmful(rules: Rules, step: int) -> int:
-    """How many obstacles do harm: the first ones."""
+    """The number of obstacles that do harm; they are the first ones."""
     return math.floor(factor_at(rules.obstacle.schedule, "harmful", step) * rules.obstacle.count + 0.5)

@@ -1,4 +1,4 @@
-"""What can be known of an agent in a step, by name: the tables of channels in docs/guide/reward.md."""
+"""What can be known about an agent in a step, by name: the channels in the tables of docs/guide/reward.md."""
 
 import math
 
@@ -9,16 +9,16 @@ from reference.setting import Rules, Species
 from reference.state import Agent, Turn, World
 
 OF_STEP = ("_before", "_change", "eaten_", "damage", "effort", "force", "_meals", "moved", "drive_reduction")
-"""How names begin or end of what is known only when a step is done."""
+"""Beginnings and ends of the names of channels that are known only when a step is done."""
 
 
 def is_of_step(name: str) -> bool:
-    """Whether an agent that observes it gets that of the step before."""
+    """Whether an agent that observes a channel gets its value of the previous step."""
     return name.startswith(OF_STEP) or name.endswith(OF_STEP)
 
 
 def channel(rules: Rules, world: World, turn: Turn, name: str) -> float:
-    """One number of an agent; in `world` its step is not counted yet."""
+    """The value of one channel for an agent; `world` does not count this step yet."""
     agent, start, deed, species = turn.agent, turn.start, turn.deed, rules.of(turn.agent)
     if name in species.stores:
         return agent.held[name]
@@ -75,7 +75,7 @@ def channel(rules: Rules, world: World, turn: Turn, name: str) -> float:
 
 
 def drive(species: Species, agent: Agent) -> float:
-    """How far the stores are from their set points, in shares of their capacities, or of where they weaken motors."""
+    """How far the stores are from their set points, as fractions of their motor thresholds, if any, or capacities."""
     apart = []
     for name, store in species.stores.items():
         point = species.gene(agent.genome, "set_point" if name == "energy" else f"set_point_{name}")
@@ -84,23 +84,23 @@ def drive(species: Species, agent: Agent) -> float:
 
 
 def felt_sectors(species: Species, turn: Turn, types: range | list[int]) -> float:
-    """How many sectors felt any of some types that it can touch."""
+    """The number of touch sectors that felt any of some types, which are indices into `species.touches`."""
     count = species.sensor.touch_sectors
     felt = [turn.deed.felt >> t * count & ((1 << count) - 1) for t in types]
     return float(np.bitwise_or.reduce(felt).item().bit_count())
 
 
 def year(rules: Rules, species: Species) -> int:
-    """The length of the year that a species knows: its own, or that of the first schedule with a period."""
+    """The length of a species' year: its own setting, or else the period of the first schedule that has one."""
     schedules = [food.schedule for food in rules.foods] + [species.hazard.schedule, rules.obstacle.schedule]
     periods = [species.sensor.season_period, *(each.period for table in schedules for each in table.values())]
     return next(period for period in periods if period)
 
 
 PLACED = ("x", "y", "moved", "touched", "contacts_", "velocity_", "angular_velocity", "heading")
-"""How names begin of what depends on where a step ended."""
+"""Beginnings of the names of channels that depend on where a step ended."""
 COMPANY = "_meals"
-"""How names end of what depends on where all others ended."""
+"""The end of the names of channels that depend on where all other agents ended."""
 
 
 def paid_names(species: Species) -> list[str]:
@@ -115,5 +115,5 @@ def is_paid_by_place(species: Species, others: bool) -> bool:
 
 
 def kept_names(species: Species) -> list[str]:
-    """What of a step is kept for the next observation, in order."""
+    """The channels of a step that are kept for the next observation, in order."""
     return [name for name in species.sensor.observes if is_of_step(name)]

@@ -1,4 +1,4 @@
-"""Counted random numbers in plain Python integers: the engine's, once more."""
+"""The engine's counter-based random numbers, reimplemented with plain Python integers."""
 
 import math
 from functools import lru_cache
@@ -8,7 +8,7 @@ PURPOSES = (
     *("initial_place", "network", "minibatch", "food_place", "frozen_mutation", "initial_heading", "initial_food"),
     *("vacant_network", "vacant_genome", "hunt", "obstacle", "inherited_network", "recombination"),
 )
-"""What draws are for, in the order of their numbers."""
+"""The purposes of draws, in the order of their numbers."""
 
 
 @lru_cache(maxsize=10_000)

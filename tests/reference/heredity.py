@@ -1,4 +1,4 @@
-"""Genomes and networks: how founders draw them, and what a child gets of its parents."""
+"""Genomes and networks: how founders draw them, and what a child gets from its parents."""
 
 import math
 
@@ -16,7 +16,7 @@ def first_genome(rules: Rules, species: Species, of: int, purpose: str) -> np.nd
 
 
 def mutated(rules: Rules, species: Species, genome: np.ndarray, child_id: int, births: int, index: int) -> np.ndarray:
-    """A child's genome. Frozen noise depends on the number of births in a window and this one's index among them."""
+    """A child's genome. Tabulated noise depends on the number of births in a window and on the index of this one."""
     frozen = rules.mutation_noise == "tabulated"
     stream = ("frozen_mutation", index, births) if frozen else ("mutation", child_id, 0)
     child = []
@@ -41,13 +41,13 @@ def clipped(gene: float, limit: float) -> float:
 
 
 def recombined(rules: Rules, first: np.ndarray, second: np.ndarray, child_id: int) -> np.ndarray:
-    """Each gene from either parent, by the first bit of a draw."""
+    """Each gene from either parent, chosen by the first bit of a draw."""
     from_second = [rules.draw("recombination", child_id, 0, i)[0] >= 2**31 for i in range(len(first))]
     return np.where(from_second, second, first)
 
 
 def inherited_network(rules: Rules, species: Species, parent: np.ndarray, child_id: int) -> np.ndarray:
-    """A parent's network with noise on each parameter."""
+    """A parent's network with noise added to each parameter."""
     noise = []
     for i in range(math.ceil(len(parent) / 4)):
         words = rules.draw("inherited_network", child_id, 0, i)
@@ -56,5 +56,5 @@ def inherited_network(rules: Rules, species: Species, parent: np.ndarray, child_
 
 
 def first_log_sd(species: Species, genome: np.ndarray) -> float:
-    """Log standard deviation of the actions of a new network."""
+    """The log standard deviation of the actions of a new network."""
     return species.gene(genome, "g_action_sd") * math.log(10) if "action_sd" in species.genome.learning else 0.0

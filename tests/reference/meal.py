@@ -1,4 +1,4 @@
-"""Who eats what, and whom."""
+"""Which agents eat which foods and which other agents."""
 
 import math
 
@@ -7,7 +7,7 @@ from reference.state import Turn, World
 
 
 def eat(rules: Rules, world: World, turns: list[Turn]) -> None:
-    """Each food goes to the nearest of those whose mouths it met, or to all."""
+    """Gives each food to the nearest of the agents whose mouths it met, or to all of them."""
     world.eaten_foods = []
     for k, stock in enumerate(world.stocks):
         left, fed = [], 0
@@ -37,14 +37,14 @@ def can_digest(rules: Rules, turn: Turn, k: int) -> bool:
 
 
 def take(world: World, turn: Turn, meal: int) -> None:
-    """One food of a kind, or, past the kinds, one agent of a species."""
+    """Counts a meal: a food of a kind or, with an index after the kinds, an agent of a species."""
     turn.meal[meal] += 1
     turn.agent.eaten[meal] += 1
     world.meals[turn.agent.species][meal] += 1
 
 
 def hunt(rules: Rules, world: World, turns: list[Turn]) -> None:
-    """Each mouth claims the nearest agent that it may eat, or all, unless its owner digests; claims are settled."""
+    """Settles what mouths claim: the nearest agent that they may eat, or all, unless their owner is digesting."""
     by_id = {turn.agent.agent_id: turn for turn in turns}
     claims: list[tuple[int, int]] = []
     for turn in turns:
@@ -58,7 +58,7 @@ def hunt(rules: Rules, world: World, turns: list[Turn]) -> None:
         turn = by_id[prey]
         return turn.start.energy if rules.prey_before_step else turn.agent.energy
 
-    if rules.each_gains:  # all are judged at once, by what they have before anyone eats
+    if rules.each_gains:  # all claims are settled at once, with the energies before anyone eats
         had = {prey: energy(prey) for _, prey in claims}
         for eater, prey in claims:
             gain(rules, world, by_id[eater], by_id[prey], had[prey])
@@ -70,7 +70,7 @@ def hunt(rules: Rules, world: World, turns: list[Turn]) -> None:
         eater, prey = min(free or claims, key=lambda each: (rules.draw("hunt", each[0], world.step)[0], each))
         gain(rules, world, by_id[eater], by_id[prey], energy(prey))
         by_id[prey].caught = True
-        # Who is eaten eats nothing: in a cycle, who has eaten cannot be eaten any more.
+        # An agent that is eaten eats nothing; in a cycle, one that has eaten can no longer be eaten.
         claims = [each for each in claims if each[1] not in (prey, eater) and each[0] != prey]
 
 
@@ -79,7 +79,7 @@ def distance(turn: Turn, other: Turn) -> float:
 
 
 def gain(rules: Rules, world: World, turn: Turn, prey: Turn, energy: float) -> None:
-    """An eater's share of the energy that its prey has."""
+    """Gives an eater its share of the energy of its prey."""
     species, eater, sums = rules.of(turn.agent), turn.agent, world.sums[turn.agent.species]
     gained = species.eats[rules.names[prey.agent.species]] * energy
     wanted = eater.energy + gained

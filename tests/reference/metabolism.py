@@ -12,7 +12,7 @@ def sigmoid(x: float) -> float:
 
 
 def motor_forces(species: Species, action: tuple[float, float], agent: Agent) -> tuple[float, float]:
-    """What both motors apply; stores may take a part."""
+    """The forces of both motors, which stores may reduce."""
     if species.learning.policy == "idle":
         return 0.0, 0.0
     left = 1.0
@@ -26,7 +26,7 @@ def motor_forces(species: Species, action: tuple[float, float], agent: Agent) ->
 
 
 def pay(rules: Rules, world: World, turn: Turn) -> None:
-    """Meals and costs, of energy and of the other stores, and the ledger."""
+    """Applies meals and costs to energy and the other stores, and updates the ledger."""
     agent, species, sums = turn.agent, rules.of(turn.agent), world.sums[turn.agent.species]
     energy, force = species.energy, math.hypot(*turn.forces)
     meal = turn.meal[: len(rules.kinds)]

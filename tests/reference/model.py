@@ -1,9 +1,9 @@
-"""The rules of a world once more, in plain and slow Python: `found` makes it, `advance` takes it to the next step.
+"""The rules of a world again, in plain, slow Python: `found` makes a world, `advance` takes it to the next step.
 
-This folder is written from docs/model.md, not from the engine, but with the same counted random numbers, so that the
-engine's every decision can be predicted. Physics, rays and the learning of networks have judges of their own.
-`advance` takes a world at the start of a step, what its agents did and where physics moved them, and says what the
-world is after the step.
+This folder is written from docs/model.md, not from the engine, but with the same counter-based random numbers, so it
+can predict every decision of the engine. Physics, rays and the learning of networks have separate tests.
+`advance` takes a world at the start of a step, what its agents did and where physics moved them, and returns the world
+after the step.
 """
 
 from collections.abc import Callable, Sequence
@@ -118,20 +118,20 @@ class Model:
         return Turn(agent, start, deed, [0] * len(agent.eaten), forces, smelled, before, company)
 
     def draw_fate(self, world: World, turn: Turn) -> None:
-        """Whether an agent has a child, and whether it dies. Who starves or was eaten dies, and has none."""
+        """Draws whether an agent has a child and whether it dies. If it starved or was eaten, it dies without one."""
         high, low, *_ = self.rules.draw("life_and_death", turn.agent.agent_id, world.step)
         lost = turn.starved or turn.caught
         turn.breeds = not lost and fine_uniform(high, low) < self.book.birth_chance(world, turn)
         self.draw_death(world, turn)
 
     def draw_death(self, world: World, turn: Turn) -> None:
-        """Whether an agent dies, with the energy that it has now."""
+        """Draws whether an agent dies, given its current energy."""
         *_, high, low = self.rules.draw("life_and_death", turn.agent.agent_id, world.step)
         by_chance = fine_uniform(high, low) < self.book.death_chance(world, turn)
         turn.dies = turn.starved or turn.caught or by_chance
 
     def reap(self, outcome: Outcome, turns: list[Turn], dies: Callable[[Turn], bool]) -> None:
-        """Takes out those who die; the children of this step are not at risk yet."""
+        """Removes the agents that die; the children of this step are not at risk yet."""
         world = outcome.world
         for turn in filter(dies, turns):
             agent, sums = turn.agent, world.sums[turn.agent.species]
@@ -167,7 +167,7 @@ class Model:
     # Policies without networks.
 
     def action(self, world: World, agent: Agent, told: tuple[float, float]) -> tuple[float, float]:
-        """What an agent does by a policy that needs no network; `told` is what a program said last."""
+        """An agent's action under a policy without a network; `told` is the last action given by a program."""
         policy = self.rules.of(agent).learning.policy
         if policy == "random":
             return normals(*self.rules.draw("action", agent.agent_id, world.step)[:2])

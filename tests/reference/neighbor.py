@@ -1,4 +1,4 @@
-"""Who and what is near an agent: the numbers of its queries."""
+"""What is near an agent: the results of its queries."""
 
 import math
 from typing import Any
@@ -8,7 +8,7 @@ from reference.state import Agent, Turn, World
 
 
 def neighbors(rules: Rules, world: World, agent: Agent, query: Any) -> dict[str, float]:
-    """What a query finds around an agent: living agents, then foods, also those just eaten if they are seen."""
+    """What a query finds around an agent: living agents, then foods, including those just eaten if they are seen."""
     names = {*query.of, *(rules.names if "*" in query.of else ())}
     others = [each for each in world.agents if each.agent_id != agent.agent_id and rules.names[each.species] in names]
     found = [(math.dist((each.x, each.y), (agent.x, agent.y)), each.agent_id, each.x, each.y) for each in others]
@@ -29,7 +29,7 @@ def neighbors(rules: Rules, world: World, agent: Agent, query: Any) -> dict[str,
 
 
 def meals_near(rules: Rules, turn: Turn, query: Any) -> float:
-    """What the agents that are near when the step is done ate in it."""
+    """The number of meals in this step of the agents that are near at its end."""
     here, names = (turn.agent.x, turn.agent.y), {*query.of, *(rules.names if "*" in query.of else ())}
     others = (each for each in turn.company if each is not turn and rules.names[each.agent.species] in names)
     return float(sum(sum(each.meal) for each in others if math.dist((each.agent.x, each.agent.y), here) <= query.range))

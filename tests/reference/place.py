@@ -1,4 +1,4 @@
-"""The arena: walls, obstacles, and where something may stand."""
+"""The arena: walls, obstacles, and where things may be placed."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -10,13 +10,13 @@ from hedon.config.config import Config
 from hedon.config.schema.arena import outer_count, walls
 
 TRIES = 20_000
-"""Draws for the place of one obstacle, one founder, or the first foods of a kind."""
+"""The most draws for the place of one obstacle, one founder, or the first foods of a kind."""
 Point = tuple[float, float]
 Circle = tuple[float, float, float]
 
 
 class Arena:
-    """Walls and obstacles of one world. `obstacles` are polygons by their corners."""
+    """Walls and obstacles of one world. `obstacles` are polygons, as lists of their corners."""
 
     def __init__(self, config: Config, draw: Draws) -> None:
         self.width, self.height = (float(np.float32(side)) for side in (config.arena.width, config.arena.height))
@@ -93,7 +93,7 @@ def overlaps(x: float, y: float, radius: float, circles: Iterable[Circle]) -> bo
 
 
 def candidate(arena: Arena, placement, center: int, step: int, words: tuple[int, int, int, int]) -> Point:
-    """A place for a new food; it may lie outside the arena."""
+    """A place for a new food; it may be outside the arena."""
     if placement.form == "uniform":
         return arena.anywhere(words)
     if placement.form == "mixture":

@@ -9,7 +9,7 @@ from reference.state import Turn, World
 
 
 def inputs(rules: Rules, world: World, turn: Turn) -> dict[str, float]:
-    """What is paid for, by the names of the terms."""
+    """The rewarded quantities, by the names of the terms."""
     species, settings = rules.of(turn.agent), rules.of(turn.agent).reward
     paid = {name: f"eaten_{name}" for name in (*rules.kinds, *rules.names) if name in species.eats}
     paid["action"] = "effort" if settings.action_norm == "max_force" else "force"
@@ -38,7 +38,7 @@ def coef(species: Species, name: str) -> float:
 
 
 def weight(rules: Rules, world: World, turn: Turn, name: str) -> float:
-    """How a weight follows from its genes."""
+    """The weight that follows from its genes."""
     species, genome = rules.of(turn.agent), turn.agent.genome
     family, w = species.reward.family, species.gene(genome, f"w_{name}")
     if family == "sinh":
@@ -57,7 +57,7 @@ def weight(rules: Rules, world: World, turn: Turn, name: str) -> float:
 
 
 def beyond(rules: Rules, world: World, turn: Turn) -> float:
-    """How far above the threshold of the family its gate is, in units of its width."""
+    """How far the gate is above the threshold, in units of the threshold's width."""
     species, gate = rules.of(turn.agent), channel(rules, world, turn, rules.of(turn.agent).reward.gate)
     threshold, width = (
         getattr(species.reward, name)

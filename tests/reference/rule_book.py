@@ -1,4 +1,4 @@
-"""Rules in Python: the same functions, called plainly with what they are told of an agent."""
+"""Rules in Python: the same functions, called directly with what they receive about an agent."""
 
 import math
 import runpy
@@ -54,7 +54,7 @@ class RuleBook:
         return plain if function is None else float(function(self.record(world, turn, chance=plain)))
 
     def record(self, world: World, turn: Turn, **answer: float) -> SimpleNamespace:
-        """What a rule is told: the table of docs/guide/rule.md."""
+        """What a rule receives: the table in docs/guide/rule.md."""
         agent, start, species = turn.agent, turn.start, self.rules.of(turn.agent)
         told = (
             inputs(self.rules, world, turn) | dict(zip(species.genes, map(float, agent.genome), strict=True)) | answer

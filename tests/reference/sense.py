@@ -9,7 +9,7 @@ from reference.state import Agent, Turn, World
 
 
 def smells(rules: Rules, world: World, agent: Agent) -> np.ndarray:
-    """(channels, noses): the sum over all sources but the agent itself, at most 1."""
+    """(channels, noses): the sum over all sources except the agent itself, at most 1."""
     species = rules.of(agent)
     sensor = species.sensor
     if not species.smells:
@@ -35,7 +35,7 @@ def smells(rules: Rules, world: World, agent: Agent) -> np.ndarray:
 
 
 def body_sense(rules: Rules, world: World, turn: Turn) -> list[float]:
-    """The observation after rays and touch. In `turn` an agent has done nothing yet."""
+    """The part of the observation after rays and touch. In `turn`, the agent has done nothing yet."""
     agent, species = turn.agent, rules.of(turn.agent)
     vx, vy, spin = turn.deed.motion
     sensor = species.sensor

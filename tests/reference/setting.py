@@ -1,4 +1,4 @@
-"""The settings of a world as the rules read them: per species, by name, in the numbers that the engine holds."""
+"""The settings of a world as the rules read them: per species, by name, with numbers as the engine stores them."""
 
 from copy import deepcopy
 from dataclasses import fields, is_dataclass
@@ -14,11 +14,11 @@ from hedon.config.expression import kind_of, limits_of
 from hedon.config.layout import layouts
 
 MAX_EXPONENT = 2.0
-"""Genes that are exponents stay within ± this."""
+"""Genes that are exponents stay within ± this value."""
 
 
 def held(value: Any) -> Any:
-    """Sections as namespaces, numbers as the engine holds them: floats of 32 bits."""
+    """Sections as namespaces, and numbers as the engine stores them: 32-bit floats."""
     if is_dataclass(value):
         return SimpleNamespace(**{each.name: held(getattr(value, each.name)) for each in fields(value)})
     if isinstance(value, dict):
@@ -67,7 +67,7 @@ class Species:
         raise AttributeError(section)
 
     def _law(self, config: Config, gene: str) -> Any:
-        """From what law founders draw a gene."""
+        """The distribution from which founders draw a gene."""
         genome, reward, name = self.genome, self.reward, gene[2:]
         weights = {
             **{kind: food.gene for kind, food in config.food.items()},
@@ -87,7 +87,7 @@ class Species:
         return held(weights[name]) if name in weights else genome.second
 
     def _mutation(self, gene: str) -> SimpleNamespace:
-        """How a gene mutates: as its own section says, or else as the genome does."""
+        """How a gene mutates: as set in its own section, or else in that of the genome."""
         genome = self.genome
         common = SimpleNamespace(
             law=genome.mutation_law,
@@ -106,7 +106,7 @@ class Species:
         return float(genome[self.genes.index(name)])
 
     def with_genes(self, genome: np.ndarray) -> "Species":
-        """The species with the numbers that genes set, as an agent with this genome has them."""
+        """The species with the values that this genome sets."""
         own = deepcopy(self)
         for path in self.genome.set:
             name = "g_" + path.replace(".", "_")
@@ -127,7 +127,7 @@ class Species:
 
 
 class Rules:
-    """What holds for a whole world, its species, and its draws."""
+    """The settings of a whole world, its species, and its random draws."""
 
     def __init__(self, config: Config, seed: int) -> None:
         self.draw = Draws(seed)
@@ -155,11 +155,11 @@ class Rules:
         self.known: dict[tuple[int, bytes], Species] = {}
 
     def of(self, agent: Any) -> Species:
-        """The species of an agent, with the numbers that its genes set."""
+        """The species of an agent, with the values that its genome sets."""
         return self.with_genes(agent.species, agent.genome)
 
     def with_genes(self, number: int, genome: np.ndarray) -> Species:
-        """A species as an agent with this genome has it."""
+        """A species with the values that this genome sets."""
         common, key = self.species[number], (number, genome.tobytes())
         if not common.genome.set:
             return common

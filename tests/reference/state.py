@@ -11,9 +11,9 @@ COUNTED = (
     *("energy_shared", "energy_lost"),
 )
 HUNTED = ("deaths_starved", "deaths_eaten", "energy_hunted", "energy_prey")
-"""Counted where agents eat agents."""
+"""Counted if agents eat agents."""
 HARMED = ("obstacles_touched", "energy_damage")
-"""Counted where there are obstacles."""
+"""Counted if there are obstacles."""
 
 
 @dataclass(eq=False)
@@ -28,14 +28,14 @@ class Agent:
     energy: float
     genome: np.ndarray
     store: dict[str, float] = field(default_factory=dict)
-    """What it holds of each store but energy."""
+    """What it holds of each store except energy."""
     parent_id: int = -1
     mate_id: int = -1
     generation: int = 0
     birth_step: int = 0
     children: int = 0
     births: int | None = 0
-    """Children that it had in the last step; None where the engine does not count them."""
+    """Children that it had in the last step; None if the engine does not count them."""
     eaten: list[int] = field(default_factory=list)
     """Foods of each kind, then agents of each species."""
     digestion: int = 0
@@ -44,7 +44,7 @@ class Agent:
     """Last step in which it waits for a second parent."""
     memory: list[float] = field(default_factory=list)
     last: list[float] = field(default_factory=list)
-    """What of the last step it observes in the next one."""
+    """Values of the last step that it observes in the next one."""
     birth_energy: float = 0.0
     energy_gained: float = 0.0
     energy_spent: float = 0.0
@@ -53,7 +53,7 @@ class Agent:
     force_right: float = 0.0
     reward: float = 0.0
     resident_slot: bool = False
-    """Whether somebody lived in its slot when the window began."""
+    """Whether its slot was occupied when the window began."""
 
     @property
     def held(self) -> dict[str, float]:
@@ -63,7 +63,7 @@ class Agent:
 
 @dataclass
 class Stock:
-    """The supply of one food kind; `foods` are the places of those present."""
+    """The supply of one kind of food; `foods` are the places of those present."""
 
     number: float
     eaten: int = 0
@@ -73,7 +73,7 @@ class Stock:
 
 @dataclass
 class Vacancy:
-    """What the dead left in a free slot, and whether somebody lived there when the window began."""
+    """A free slot: the genome left in it, and whether it was occupied when the window began."""
 
     genome: np.ndarray
     resident_slot: bool = False
@@ -81,7 +81,7 @@ class Vacancy:
 
 @dataclass
 class Newborn:
-    """A birth of this window; `parent` is its place among the newborns, or -1 with the older parent's genome."""
+    """A birth in this window; `parent` is the parent's index among newborns, or -1 for an older one with `genome`."""
 
     agent_id: int
     species: int
@@ -91,8 +91,8 @@ class Newborn:
 
 @dataclass
 class World:
-    """A world between two steps; `agents` in the order of their ids. Of each species: sums, meals by kind, and
-    vacancies, of which the last is used next."""
+    """A world between two steps, with `agents` in the order of their ids. For each species: sums, meals by kind, and
+    vacancies, the last of which is used next."""
 
     step: int
     next_agent_id: int
@@ -105,10 +105,10 @@ class World:
     vacancies: list[list[Vacancy]]
     newborns: list[Newborn] = field(default_factory=list)
     eaten_foods: list[tuple[float, float, int]] = field(default_factory=list)
-    """Foods just eaten that rays still meet, with their kinds."""
+    """Foods just eaten that rays still hit, with their kinds."""
 
     def copy(self) -> "World":
-        """The same world; genomes are never changed in place."""
+        """A copy that shares the genomes, which are never changed in place."""
         return replace(
             self,
             agents=[replace(a, eaten=[*a.eaten], memory=[*a.memory], store={**a.store}) for a in self.agents],
@@ -127,12 +127,12 @@ class Deed:
 
     mouthfuls   foods (kind, index) that met its mouth
     prey        ids of the agents that its mouth touched and that it may eat
-    obstacles   those that it touched, by their numbers
-    seen        (rays, types that it sees) what it acted on
-    motion      its velocity along x and y, and its angular velocity; where it ended, as the place
-    felt        bit channel · sectors + sector of what it touched
-    replaced    it died, and a newborn lies in its slot: where it ended is not known
-    gone        it was eaten, and replaced: of several in a mouth it was the nearest
+    obstacles   numbers of the obstacles that it touched
+    seen        (rays, types that it sees) the readings that it acted on
+    motion      its velocity along x and y, and its angular velocity, at the end of the step
+    felt        what it touched, as a bit mask: bit channel · sectors + sector
+    replaced    it died, and a newborn is in its slot, so where it ended is not known
+    gone        it was eaten and replaced, so it counts as the nearest of several in a mouth
     """
 
     action: tuple[float, float]
@@ -151,7 +151,7 @@ class Deed:
 
 @dataclass
 class Turn:
-    """One agent's step, as it goes on: what it was at the start, what it did, and what came of it.
+    """One agent's step in progress: its state at the start, what it did, and the result.
 
     before    the world at the start
     company   the turns of all agents
@@ -174,7 +174,7 @@ class Turn:
 
 @dataclass
 class Outcome:
-    """The world after a step, the turns and rewards of those who lived in it, those who died, and why."""
+    """The world after a step, the turns and rewards of the agents that lived in it, those that died, and why."""
 
     world: World
     turns: list[Turn]
