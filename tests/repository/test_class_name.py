@@ -1,4 +1,4 @@
-"""A class has one name, and a name one class: whoever reads it need not look where it was imported from."""
+"""Class names are unique, so readers need not look up where a class was imported from."""
 
 import ast
 from collections import defaultdict

@@ -1,4 +1,4 @@
-"""The numbers that pages tell of contests are those of the tables beside them."""
+"""The numbers on pages about contests match the tables next to them."""
 
 import re
 from typing import Any
@@ -18,7 +18,7 @@ ARMS = {
 }
 """Ways of learning, as the page names them, and the folder of each."""
 SCALES = {"rewards of unit variance": "scaled", "advantages normalized": "normalized"}
-"""The same where the size of a reward counts less."""
+"""The same for ways in which the size of a reward matters less."""
 
 
 def test_contests_of_24_worlds():
@@ -38,7 +38,7 @@ def test_contests_of_24_worlds():
 
 @pytest.mark.parametrize("arms", [ARMS, SCALES], ids=["learning", "scale"])
 def test_rows_of_contests_by_other_ways_of_learning(arms):
-    """Each row of the page: the share by itself, then less that of the baseline's learning in pairs of equal seeds."""
+    """Each row of the page: the share itself, then its difference from the baseline's learning, paired by seed."""
     each = {arm: shares(f"food-5-{name}") for arm, name in arms.items()}
     pairs = {arm: values - shares("food-5-24") for arm, values in each.items()}
     alone, paired = ([p_of(values) for values in found.values()] for found in (each, pairs))
@@ -72,7 +72,7 @@ def test_the_arm_in_which_the_large_reward_wins():
     assert f"({scaled[:-1]}, and {normalized}" in article
 
 
-def test_contests_of_eight_worlds_are_told_by_worlds_first():
+def test_contests_of_eight_worlds_are_tested_across_worlds():
     shown = page("start.md")
     for name in ("food", "paper"):
         values = shares(name)
@@ -80,8 +80,8 @@ def test_contests_of_eight_worlds_are_told_by_worlds_first():
         assert f"{p_of(values):.3f} by t, {signed_rank.pvalue:.3f} by Wilcoxon" in shown
 
 
-def test_the_contest_of_64_worlds_of_a_device():
-    """Each number of the section, the scoreboard and the paper, from the table of worlds."""
+def test_the_contest_of_64_worlds_on_a_device():
+    """Each number in the section, the scoreboard and the paper comes from the table of worlds."""
     values = shares("food-5-rate-10-64")
     s, bounds = coefficient("food-5-rate-10-64")
     assert len(values) == 64

@@ -1,4 +1,4 @@
-"""The figures of a device on its page are those of the trial that is kept."""
+"""The numbers on the page about the device match the committed trial."""
 
 import json
 

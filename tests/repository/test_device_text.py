@@ -1,6 +1,6 @@
-"""The worlds that `tests/device.py` has as texts, for machines without hedon, are those of the presets.
+"""The worlds that `tests/device.py` has as texts, for machines without hedon, match the presets.
 
-Write them again after a change of settings: `PYTHONPATH=tests uv run python -m repository.test_device_text`.
+After a change of settings, `PYTHONPATH=tests uv run python -m repository.test_device_text` writes them again.
 """
 
 import os
@@ -19,7 +19,7 @@ PRESETS = ("baseline", "poison", "predator", "relocation")
 
 
 @pytest.mark.parametrize("preset", PRESETS)
-def test_a_text_is_that_of_its_preset(preset: str):
+def test_a_text_matches_its_preset(preset: str):
     assert (TEXTS / f"{preset}.txt").read_text() == engine_text(load_config(preset), 1)
 
 
@@ -42,7 +42,7 @@ def test_the_script_runs_on_the_emulated_device(tmp_path, options: tuple[str, ..
 
 @pytest.mark.long
 def test_its_program_is_built_for_a_device():
-    """By nvcc; on a machine without a device the program says so."""
+    """Built by nvcc; on a machine without a device, the program says so."""
     if device.build.find_nvcc() is None:
         pytest.skip("needs nvcc: uv sync --group cuda")
     program = device.build_default(emulated=False)

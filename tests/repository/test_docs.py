@@ -1,4 +1,4 @@
-"""What the documentation shows can be done as it is shown: its Python runs, its configs load."""
+"""The examples in the documentation work: its Python runs, and its configs load."""
 
 import os
 import re
@@ -38,7 +38,7 @@ def test_blocks_are_found():
 
 
 OPTIONAL = {"rule": ("numba", "rules"), "environment": ("pettingzoo", "env")}
-"""What a page needs beside hedon itself: a module, and the optional packages of hedon that bring it."""
+"""What a page needs besides hedon itself: a module, and the extra of hedon that installs it."""
 
 
 @pytest.mark.parametrize("page", names("python"))
@@ -46,7 +46,7 @@ def test_python_of_a_page_runs_from_top_to_bottom(page, tmp_path):
     module, extra = OPTIONAL.get(page.stem, ("hedon", ""))
     if find_spec(module) is None:
         pytest.skip(f'needs the optional packages: pip install "hedon[{extra}]"')
-    # Each block at its place in the page, so that a traceback names the line there.
+    # Each block is put at its line in the page, so that tracebacks give the page's line numbers.
     text = page.read_text(encoding="utf-8")
     program = ""
     for block in blocks(page, "python"):
@@ -73,7 +73,7 @@ def test_the_readme_names_every_optional_package():
 
 
 def said(table: dict, path: str = "") -> Iterator[tuple[str, Any]]:
-    """What a block says, by the path of each setting."""
+    """The values in a block, by the path of each setting."""
     for name, value in table.items():
         if isinstance(value, dict) and value:
             yield from said(value, f"{path}{name}.")

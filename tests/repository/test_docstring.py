@@ -1,7 +1,7 @@
-"""What public packages export is documented: each argument, the shape of each array, each error that it raises.
+"""Everything that public packages export is documented: arguments, the shapes of arrays, and errors raised.
 
-Ruff's D417 compares a section of arguments with the arguments, and asks for none; its DOC501 also asks for errors that
-a function raises and catches itself, and for those of private functions.
+Ruff's D417 checks a section of arguments if there is one, but does not require it; its DOC501 also requires errors that
+a function raises and catches itself, and those of private functions.
 """
 
 import ast
@@ -28,7 +28,7 @@ SHAPE = re.compile(r"shape|\([\w² .:+*/…-]+,[\w² ,.:+*/…-]*\)")
 
 
 def patterns(tree: ast.Module) -> tuple[re.Pattern[str], re.Pattern[str]]:
-    """The two patterns with the names that a module has for such types, its own and imported ones."""
+    """The two patterns, extended by a module's own and imported aliases of such types."""
     homes: list[tuple[ast.Module, set[str] | None]] = [(tree, None)]
     for node in tree.body:
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("hedon"):
@@ -44,14 +44,14 @@ def patterns(tree: ast.Module) -> tuple[re.Pattern[str], re.Pattern[str]]:
 
 
 def aliases(tree: ast.Module, kind: re.Pattern[str], wanted: set[str] | None) -> list[str]:
-    """The names that a module has for types of a kind."""
+    """The aliases that a module defines for types of a kind."""
     made = [node for node in tree.body if isinstance(node, ast.Assign) and kind.search(ast.unparse(node.value))]
     names = [target.id for node in made for target in node.targets if isinstance(target, ast.Name)]
     return [name for name in names if wanted is None or name in wanted]
 
 
 def public(tree: ast.Module | ast.ClassDef, path: str = "") -> Iterator[tuple[str, ast.AST, str]]:
-    """Functions, methods and constructors by their names, each with its docstring, and fields of arrays with theirs."""
+    """Public functions, methods and constructors by name, each with its docstring, and the same for fields."""
     doc = ast.get_docstring(tree) or ""
     for node, after in zip(tree.body, [*tree.body[1:], None], strict=True):
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
@@ -77,19 +77,19 @@ def exported() -> dict[Path, set[str]]:
 
 
 def is_overload(node: Function) -> bool:
-    """Whether a function only tells the type checker of one way to call the one that follows."""
+    """Whether a function only declares a signature of the one that follows, for the type checker."""
     return any(isinstance(each, ast.Name) and each.id == "overload" for each in node.decorator_list)
 
 
 def section(doc: str, name: str) -> dict[str, str]:
-    """The entries of a section of a docstring, by the words before their colons; `low, high: …` is one of each."""
+    """The entries of a section of a docstring, by the words before their colons; `low, high: …` is one for each."""
     found = re.search(rf"^{name}:\n((?:(?: +.*)?(?:\n|\Z))*)", doc, re.MULTILINE)
     entries = re.split(r"^(?=\S)", dedent(found[1]), flags=re.MULTILINE)[1:] if found else []
     return {word.strip("* "): entry for entry in entries for word in entry.partition(":")[0].split(",")}
 
 
 def raised(node: ast.AST) -> Iterator[str]:
-    """The errors that leave the body of a function by its own `raise`, by their names."""
+    """The names of the errors that a function raises itself and does not catch."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, Function | ast.Lambda | ast.ClassDef):
             continue
@@ -151,7 +151,7 @@ def test_what_a_docstring_lacks_is_found(source):
     assert len(list(faults(ast.parse(source)))) == 1
 
 
-def test_exported_functions_say_their_arguments_and_the_shapes_of_arrays():
+def test_exported_functions_document_their_arguments_and_the_shapes_of_arrays():
     names = exported()
     assert sum(len(own) for path, own in names.items() if path.is_file()) > 100
     missing = [

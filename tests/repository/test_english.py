@@ -1,7 +1,7 @@
-"""Pages, docstrings, messages and comments are idiomatic English, without the turns that readers stumble over.
+"""Pages, docstrings, messages and comments are idiomatic English, without phrases that readers stumble over.
 
-Some turns are always wrong. Others are habits: right in places, so their number in each folder may only fall. After an
-edit, `PYTHONPATH=tests uv run python -m repository.test_english` writes the numbers again.
+Some phrases are always wrong. Others are habits: right in places, so their number in each folder may only fall. After
+an edit, `PYTHONPATH=tests uv run python -m repository.test_english` updates the numbers.
 """
 
 import csv
@@ -20,7 +20,7 @@ WRONG = {
     "so much that is left open": r"\bso (?:much|many)\b(?! (?:[^\s]+ ){0,3}(?:that|as)\b)",
     "of whom there is none": r"\bof whom there\b",
 }
-"""What is wrong, by a name that tells what to look for."""
+"""Patterns of what is always wrong, by a descriptive name."""
 LATER = ("docs/results/", "src/hedon/view/static/")
 PLACES = (
     "README.md",
@@ -100,11 +100,11 @@ HABITS = {
     "alone after its noun": r"[a-z`)] alone\b",
     "beside": r"\bbeside\b",
 }
-"""Turns that are often a habit, by name."""
+"""Patterns of phrases that are often a habit, by name."""
 
 
 def folder_of(place: str) -> str:
-    """The folder that a file is counted in: a package of `src`, two levels of all else."""
+    """The folder in which a file is counted: a package of `src`, or two levels of anything else."""
     *folders, _ = place.split("/")
     return "/".join(folders[: 3 if place.startswith("src/") else 2]) or place
 

@@ -1,4 +1,4 @@
-"""The committed verdicts on the corrected worlds of the paper's length agree with the tool's rules.
+"""The committed verdicts on the corrected worlds of full length agree with the tool's rules.
 
 The records of these worlds are too large to keep, so the rules are applied to the table of worlds.
 `PYTHONPATH=tests uv run python -m repository.test_full_length` writes the verdicts again.
@@ -34,11 +34,11 @@ COLUMNS: Mapping[str, Callable[[Mapping[str, Any]], float]] = {
     "generation": lambda world: world["generation"],
     "extinction": lambda world: world["extinct_step"],
 }
-"""The figure of a world for each claim about the baseline, but for its lifespan, which is the same in every world."""
+"""The measure of a world for each claim about the baseline, except its lifespan, which is the same in all worlds."""
 
 
 def verdicts() -> list[Verdict]:
-    """The verdicts of the rules on the worlds of the table."""
+    """The verdicts of the rules on the worlds in the table."""
     rows = table("full-six/worlds.csv").to_dicts()
     worlds: list[Any] = [
         SimpleNamespace(row=row, extinct_step=row["extinct_step"], last_step=row["steps"], condition=CONDITION)
@@ -59,7 +59,7 @@ def as_table() -> pl.DataFrame:
     return pl.DataFrame([asdict(verdict) for verdict in verdicts()])
 
 
-def test_the_verdicts_are_those_of_the_rules():
+def test_the_verdicts_follow_from_the_rules():
     assert VERDICTS.read_text(encoding="utf-8") == as_table().write_csv()
 
 

@@ -1,4 +1,4 @@
-"""Links of the documentation lead somewhere: to files that are there, to headings that are there."""
+"""Links in the documentation lead to existing files and headings."""
 
 import re
 from pathlib import Path

@@ -11,7 +11,7 @@ from nbformat import NotebookNode, read
 ROOT = Path(__file__).parents[2]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 PICTURES = {"compare": 1, "descent": 1, "first_run": 1, "own_reward": 0, "power": 1}
-"""How many cells show one."""
+"""How many cells of each notebook show one."""
 
 
 def test_there_are_five():

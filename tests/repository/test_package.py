@@ -1,4 +1,4 @@
-"""What is published can be installed: a wheel where there is no compiler, the source where there is one."""
+"""Published packages can be installed: a wheel without a compiler, the source with one."""
 
 import json
 import os
@@ -20,13 +20,13 @@ pytest.importorskip("ziglang", reason="needs Zig's compiler: uv sync --group vie
 
 HERE = f"{sys.version_info.major}.{sys.version_info.minor}"
 LARGEST = 2_500_000
-"""Of a wheel with the page of `hedon view`, two modules of the engine in it, and of the source [byte]."""
+"""Of a wheel with the page of `hedon view`, including two modules of the engine, and of the source [byte]."""
 MACHO = {
-    "aarch64": bytes.fromhex("cffaedfe0c000001"),  # of 64 bits, then the processor
+    "aarch64": bytes.fromhex("cffaedfe0c000001"),  # 64-bit, then the processor
     "x86_64": bytes.fromhex("cffaedfe07000001"),
 }
 SIGNATURE = bytes.fromhex("fade0c02")
-"""With which a code directory begins."""
+"""The first bytes of a code directory."""
 UV = shutil.which("uv") or str(ROOT / ".uv" / "bin" / "uv")
 
 
@@ -41,14 +41,14 @@ def run(*command: str | Path, path: str | None = None, cwd: Path | None = None) 
 
 
 def world_digests(folder: Path) -> list[str]:
-    """What this environment's hedon makes of the same world."""
+    """The digests of the same world in this environment."""
     command = [sys.executable, "-c", "from hedon.cli.start import main; main()", "run", "baseline", "--steps", "1024"]
     run(*command, "--out", folder)
     return json.loads((folder / "manifest.json").read_text())["world_digests"]
 
 
 def try_installed(folder: Path, package: Path, path: str | None) -> None:
-    """Installs a package into an environment of its own, runs a small world there, and writes the page of it."""
+    """Installs a package into a new environment, runs a small world there, and exports its page."""
     run(UV, "venv", "--python", sys.executable, folder / "env")
     python = folder / "env" / "bin" / "python"
     run(UV, "pip", "install", "--python", python, package, path=path)
@@ -96,7 +96,7 @@ def test_a_wheel_for_arm_has_an_engine_for_arm(source: Path, tmp_path: Path) -> 
 
 @pytest.mark.parametrize("processor", MACHO)
 def test_a_wheel_for_macos_has_an_engine_for_it(source: Path, tmp_path: Path, processor: str) -> None:
-    """That needs no library but the system's, and for ARM is signed, as macOS asks there. It was never run."""
+    """The engine needs only the system library and, as macOS requires, is signed for ARM. It has never been run."""
     try:
         wheel = build_macos_wheel(source, HERE, processor, tmp_path)
     except OSError as error:

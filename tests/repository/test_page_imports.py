@@ -1,4 +1,4 @@
-"""Modules of the page import one another in one direction."""
+"""The imports between modules of the page have no cycle."""
 
 import re
 from graphlib import TopologicalSorter

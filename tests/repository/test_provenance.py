@@ -1,4 +1,4 @@
-"""The order of expectations and worlds, as provenance.csv states it, is what the history of the repository shows."""
+"""The order of expectations and worlds in provenance.csv agrees with the history of the repository."""
 
 import re
 import subprocess
@@ -66,7 +66,7 @@ def test_the_order_is_what_the_history_shows(run):
     assert not revision or contains("HEAD", revision)
     includes = bool(revision) and contains(revision, run["expectation"])
     order = shown_order(run["started"], run["expectation_committed"], includes)
-    # Nothing but the text itself shows that worlds were already running.
+    # Only the text itself shows that worlds were already running.
     assert run["order"] == order or (run["order"], order) == (AFTER, NOT_SHOWN)
 
 

@@ -1,4 +1,4 @@
-"""The numbers on pages of results are those of the tables beside them, and the scoreboard says what the tool says."""
+"""The numbers on pages of results match the tables next to them, and the scoreboard matches the tool's verdicts."""
 
 import json
 import re
@@ -27,7 +27,7 @@ HUNTED = ("predator", "predator-small-mouth", "predator-large-mouth", "predator-
 
 
 def test_evolution_from_above():
-    """Falls from where the worlds began, and pairs with the control from 0, by Student's t."""
+    """Decreases from the starting weights, and paired differences from the control that starts at 0, by Student's t."""
     text_of, worlds = page("start.md"), table("start/from/worlds.csv").sort("start", "seed")
     assert table("start/rate/worlds.csv")["seed"].unique().sort().equals(worlds["seed"].unique().sort())
     for (start, step), rows in worlds.group_by("start", "step"):
@@ -52,7 +52,7 @@ def test_evolution_from_above():
 
 
 def slopes(path: str, weights: tuple[str, ...], outcome: str) -> dict[int, np.ndarray]:
-    """Of each world, the slopes of relative fitness with each weight, by least squares on all of them."""
+    """For each world, the slopes of relative fitness on the weights, by least squares on all of them."""
     found = {}
     for (seed,), rows in table(path).group_by("seed", maintain_order=True):
         fitness = rows[outcome].to_numpy()
@@ -88,7 +88,7 @@ def test_slopes_of_prey_by_group_of_founders(outcome, weight, label):
 
 
 def test_fear_by_the_sequels_senses():
-    """Two named tests over forty groups, each group with predators and without; and what was seen afterwards."""
+    """Two specified tests over forty groups, each with and without predators, and what was seen afterwards."""
     weights, shown, named = FOUNDERS["predator"], " ".join(page("predator.md").split()), []
     for outcome, label in (("offspring", "children"), ("descendants", "living descendants")):
         by_world = [slopes(f"predator/fear/{name}.parquet", weights, outcome) for name in ("predator", "prey-alone")]
@@ -178,7 +178,7 @@ def test_ten_seeds_of_the_baseline():
         assert row.endswith(" | ".join(span(values, 2, sign=False) for values in by_arm) + " |")
     scores = drift.filter((pl.col("weight") == "w_normal") & (pl.col("test") == "direction"))
     for row in scores.to_dicts():
-        reach = stats.norm.ppf(0.975) / row["worlds"] ** 0.5  # as the p takes it: scores of drift are standard normal
+        reach = stats.norm.ppf(0.975) / row["worlds"] ** 0.5  # as for p: scores of drift are standard normal
         bounds = f"({text(row['effect'] - reach, 2)} … {text(row['effect'] + reach, 2)})"
         assert f"{text(row['effect'], 2)} {bounds}, p {p_text(row['p_holm'])}" in shown
 
@@ -245,7 +245,7 @@ def test_the_papers_program_over_its_five_worlds():
 
 @pytest.mark.parametrize("seed", [1, 2, 4])
 def test_lines_that_only_mutate(seed):
-    """The table of each seed's drift is what the example makes from the seed alone."""
+    """The table of each seed's drift is what the example computes from the seed alone."""
     first = table("program/mutation-lines.csv").filter(seed=seed).row(0, named=True)
     assert next(example()["lines"]([seed])) == first
 
@@ -255,7 +255,7 @@ def example() -> dict[str, Any]:
 
 
 def test_births_have_the_mutations_that_the_example_draws(tmp_path):
-    """A child's genes are its parent's and the entry of the seed's table; a newborn that dies first has none."""
+    """A child's genes are its parent's plus an entry of the seed's table, unless it dies as a newborn."""
     kept = ("world.mutation_noise=tabulated", "world.inheritance=at_window_end")
     small_run(tmp_path / "run", 12 * WINDOW_STEPS, seeds=(3,), overrides=kept)
     run, draw, seen = open_run(tmp_path / "run"), example()["birth_table"], 0
@@ -276,7 +276,7 @@ def test_births_have_the_mutations_that_the_example_draws(tmp_path):
 
 
 def test_the_papers_program_at_its_own_length():
-    """Rows of the page from its tables, and how many genes ended on the side of the lines that only mutate."""
+    """Rows of the page from its tables, and how many genes end on the same side as lines that only mutate."""
     genes, course, shown = table("program/full/genes.csv"), table("program/full/course.csv"), page("released.md")
     lines = table("program/mutation-lines.csv")
     assert genes.select(lines.columns).equals(lines.filter(pl.col("seed").is_in([1, 2, 4])))
@@ -389,7 +389,7 @@ def test_the_scoreboard_prints_the_verdicts_of_the_tool():
 
 
 def test_no_word_of_the_tool_is_used_for_an_opinion():
-    """What we think stands in a column of its own, in other words than the verdicts."""
+    """What we think is in a separate column, in words other than those of the verdicts."""
     header, *rows = [line for line in page("README.md").splitlines() if line.startswith("|")]
     assert "what we think so far" in header
     opinions = [line.split("|")[-2] for line in rows[1:]]

@@ -1,6 +1,6 @@
-"""No page of today calls a setting, a choice, a command or an option by a name that was retired.
+"""No current page uses a retired name of a setting, a choice, a command or an option.
 
-Pages about earlier versions may: the changelog, the guide to upgrade, and results with the commands that made them.
+Pages about earlier versions may: the changelog, the upgrade guide, and results with the commands that made them.
 """
 
 import re
@@ -20,7 +20,7 @@ PAGES = sorted(
     if str(page.relative_to(ROOT)) not in HISTORY
 ) + [ROOT / name for name in ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md")]
 CHOICES = sorted({old for names in (*VALUES.values(), FIDELITY_NOW) for old in names} - {"fed", "hungry"})
-"""As code alone: as words they have other uses."""
+"""Only as code, since as words they have other uses."""
 RETIRED = {
     **{name: rf"(?<![\w.]){re.escape(name)}(?![\w.])" for name in MOVED},
     **{f"{choice} as a choice": rf"`\"?{choice}\"?`|={choice}\b" for choice in CHOICES},

@@ -1,4 +1,4 @@
-"""The site is made without a warning, holds every page of the documentation, and its links lead somewhere."""
+"""The site builds without warnings, has every page of the documentation, and has no broken links."""
 
 import json
 import re
@@ -17,7 +17,7 @@ from hedon.view.page import page_files
 pytest.importorskip("furo", reason="needs Sphinx and its theme: uv sync --group docs")
 
 NO_PAGES = {"web", "docs/site/contents.md"}
-"""Where there is Markdown that is no page: a part that is read by its folder, and what is a part of another page."""
+"""Markdown that is not a page: a part of the project read in its folder, and a part of another page."""
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def test_its_links_lead_somewhere(site: Path) -> None:
 
 
 def test_a_page_asks_no_other_host_for_anything(site: Path) -> None:
-    """Neither for a script, a style or a picture, nor by a program within the page."""
+    """Neither for scripts, styles or pictures, nor from programs within the page."""
     asked = []
     for page in sorted(site.rglob("*.html")):
         text = page.read_text(encoding="utf-8")
@@ -84,6 +84,6 @@ def test_docstrings_and_equations_are_shown(site: Path) -> None:
 def test_the_demo_of_the_live_page_is_in_it(site: Path) -> None:
     live = site / "docs" / "live"
     for name, path in page_files().items():
-        if name not in ("single.js", "hero.gz", "hero.jpg"):  # of the article, which this site lacks
+        if name not in ("single.js", "hero.gz", "hero.jpg"):  # of the article, not of the live page
             assert (live / name).read_bytes() == path.read_bytes()
     assert json.loads((live / "data/page.json").read_text(encoding="utf-8"))["run"] is True

@@ -1,4 +1,4 @@
-"""A checkout stays small: nothing in it that a command builds, and pictures with few colors."""
+"""A checkout stays small: it has nothing that a command builds, and pictures have few colors."""
 
 from PIL import Image
 from project_files import ROOT, project_files
@@ -15,4 +15,4 @@ def test_pictures_of_the_documentation_have_palettes():
     pictures = [path for path in project_files(".png") if path.is_relative_to(ROOT / "docs")]
     assert pictures
     full = [str(path.relative_to(ROOT)) for path in pictures if Image.open(path).mode != "P"]
-    assert not full, f"call python -m release.palette {' '.join(full)}"
+    assert not full, f"run python -m release.palette {' '.join(full)}"

@@ -1,4 +1,4 @@
-"""The house rules that a script can hold: sizes of files, who includes whom, what the step path may use."""
+"""The house rules that a script can check: sizes of files, includes between parts, and what the step path may use."""
 
 import re
 from pathlib import Path
@@ -28,7 +28,7 @@ FORBIDDEN_IN_STEP = re.compile(
     r"#include <(vector|string|map|set|functional|memory|iostream|mutex|thread|chrono|random|algorithm)>"
     r"|\b(new|malloc|calloc|virtual|throw|try|dynamic_cast)\b[^\w]"
 )
-# nvcc knows none of GCC's builtins behind them: it took `std::countr_zero` for the constant 32, without a word.
+# nvcc knows none of GCC's builtins behind them: it silently took `std::countr_zero` for the constant 32.
 UNKNOWN_TO_NVCC = re.compile(
     r"std::(bit_\w+|byteswap|count[lr]_(zero|one)|has_single_bit|popcount|rot[lr])\b|__builtin_(clz|ctz|ffs|parity|popcount)"
 )
@@ -70,20 +70,20 @@ def test_every_engine_file_says_what_it_is_for():
         assert first.startswith("///") or twin, path.relative_to(ROOT)
 
 
-def test_the_project_speaks_of_itself_alone():
+def test_no_file_has_notes_about_unfinished_work():
     words = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
     for path in project_files(".py", ".h", ".cpp", ".md", ".toml"):
         if path != Path(__file__):
             assert not words.search(path.read_text(encoding="utf-8")), path.relative_to(ROOT)
 
 
-def test_test_files_have_names_of_their_own():
-    """Pytest imports them by name alone, and stops where two share one."""
+def test_test_files_have_unique_names():
+    """Pytest imports them by name only, and stops if two share one."""
     names = [path.name for path in project_files(".py") if path.is_relative_to(ROOT / "tests")]
     assert len(names) == len(set(names))
 
 
-def test_kernels_count_bits_by_functions_that_nvcc_knows():
+def test_kernels_count_bits_with_functions_that_nvcc_knows():
     wrappers = {"device.h", "thread.h"}  # they call CUDA's own functions where it compiles
     of_processors = {"avx2.h", "avx512.h", "neon.h", "portable.h"}
     for part in (*STEP_PATH, "base", "lanes", "cuda"):

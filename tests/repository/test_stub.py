@@ -1,4 +1,4 @@
-"""The engine's type stubs, which editors and the type checker read, say what the engine has."""
+"""The engine's type stubs, which editors and the type checker read, match the engine."""
 
 import subprocess
 import sys
@@ -8,7 +8,7 @@ STUBS = Path(__file__).parents[2] / "src" / "hedon" / "_engine"
 
 
 def test_the_stubs_are_current(tmp_path):
-    """After a change of the bindings: `make stubs`."""
+    """After changing the bindings, run `make stubs`."""
     command = [sys.executable, "-m", "nanobind.stubgen", "-q", "-r", "-m", "hedon._engine", "-O", str(tmp_path)]
     subprocess.run(command, check=True)
     fresh = {path.name: path.read_text() for path in (tmp_path / "_engine").iterdir()}

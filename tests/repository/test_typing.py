@@ -1,4 +1,4 @@
-"""A user's program, checked by mypy and pyright with the types that the installed package gives (`py.typed`)."""
+"""A user's program, checked by mypy and pyright with the types of the installed package (`py.typed`)."""
 
 import subprocess
 import sys
