@@ -1,4 +1,4 @@
-"""Environments that begin as a saved world: the same moment, and a future for each seed."""
+"""Environments that start from a saved world: the same moment, and a different future for each seed."""
 
 import numpy as np
 import pytest
@@ -11,13 +11,13 @@ CONFIG = load_config("baseline", overrides=LIVELY)
 
 
 def seen_by_id(worlds, world):
-    """The observations of the living, by their ids."""
+    """The observations of the living agents, ordered by id."""
     (group,) = worlds.groups.values()
     living = np.flatnonzero(group.alive[world])
     return group.observations[world, living[np.argsort(group.ids[world, living])]]
 
 
-def test_worlds_begin_as_a_saved_one_and_go_their_own_ways():
+def test_worlds_start_from_a_saved_one_and_go_their_own_ways():
     past = make(CONFIG, 1, seed=3)
     for _ in range(70):
         past.step(past.actions)
@@ -31,7 +31,7 @@ def test_worlds_begin_as_a_saved_one_and_go_their_own_ways():
         past.step(np.broadcast_to(same, past.actions.shape))
         futures.step(np.broadcast_to(same, futures.actions.shape))
     ends = [world.digest() for world in futures.simulation.worlds]
-    assert ends[0] == past.simulation.worlds[0].digest(), "with its own seed it goes on as it would have"
+    assert ends[0] == past.simulation.worlds[0].digest(), "with its own seed it continues as it would have"
     assert len(set(ends)) == 3
     copied = futures.clone()
     for each in (futures, copied):
@@ -40,7 +40,7 @@ def test_worlds_begin_as_a_saved_one_and_go_their_own_ways():
         assert not set(each.simulation.seeds) & {3, 8, 9}
 
 
-def test_a_saved_world_that_cannot_be_one_is_refused(tmp_path):
+def test_an_unusable_saved_world_is_refused(tmp_path):
     saved = make(CONFIG, 2, seed=1).save()
     with pytest.raises(ArgumentError, match="saved: there are 2 worlds, here 1"):
         make(CONFIG, 2, world=saved)

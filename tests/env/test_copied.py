@@ -1,4 +1,4 @@
-"""Copies of environments of every kind go on as the original would, and change nothing in it."""
+"""Copies of environments of every kind continue as the original would, and change nothing in it."""
 
 import copy
 import importlib.util
@@ -99,11 +99,11 @@ WAYS = {
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_copy_goes_on_as_the_original_would(kind, way):
+def test_a_copy_continues_as_the_original_would(kind, way):
     if kind in NEEDS and importlib.util.find_spec(NEEDS[kind]) is None:
         pytest.skip(f"needs {NEEDS[kind]}")
     made, go_on = KINDS[kind]()
-    if kind != "jax":  # whose states are one line: those of the copy begin where those of the original are
+    if kind != "jax":  # whose states form one line: the copy's states start where the original's are
         for _ in range(3):
             go_on(made)
     made_too = WAYS[way](made)
@@ -111,7 +111,7 @@ def test_a_copy_goes_on_as_the_original_would(kind, way):
     np.testing.assert_equal([go_on(made_too) for _ in range(STEPS)], told)
     for of in (made, made_too):
         simulation = of.worlds.simulation if kind == "slot" else of.simulation
-        assert simulation._driven, "nobody else may step it"
+        assert simulation._driven, "nothing else may step it"
 
 
 class _Named(Simulation):

@@ -1,4 +1,4 @@
-"""Arguments of driven worlds: what is wrong is named in one sentence, and nothing is changed by it."""
+"""Arguments of driven worlds: a wrong one is named in one sentence and changes nothing."""
 
 from collections.abc import Callable
 from typing import Any
@@ -134,7 +134,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("bad", "says"), REFUSED.values(), ids=REFUSED)
-def test_actions_that_are_refused_leave_none_behind(bad, says):
+def test_refused_actions_leave_none_behind(bad, says):
     worlds = make(CONFIG, seed=1, threads=1)
     worlds.step(np.full(SHAPE, 0.25))
     before = worlds.actions.copy()
@@ -145,7 +145,7 @@ def test_actions_that_are_refused_leave_none_behind(bad, says):
     assert worlds.simulation.worlds[0].step == 2
 
 
-def test_a_wrong_action_of_one_species_leaves_those_of_all_as_they_were():
+def test_a_wrong_action_of_one_species_leaves_all_actions_unchanged():
     worlds, like = (make("predator", seed=1, threads=1) for _ in range(2))
     before = {name: array.copy() for name, array in worlds.actions.items()}
     saved = worlds.save()
@@ -260,7 +260,7 @@ ACTIONS = {
 
 
 @pytest.mark.parametrize(("actions", "says"), ACTIONS.values(), ids=ACTIONS)
-def test_wrong_actions_of_pettingzoo_are_named_and_none_is_told(actions, says):
+def test_wrong_actions_of_pettingzoo_are_named_and_none_is_applied(actions, says):
     pytest.importorskip("pettingzoo", reason='needs the optional packages: pip install "hedon[env]"')
     from hedon.env import ParallelEnv
 

@@ -47,7 +47,7 @@ def test_an_id_makes_the_life_of_one_agent():
     assert ends == [False] * 4 + [True]
 
 
-def test_a_vector_of_lives_is_that_of_single_ones_up_to_their_ends():
+def test_a_vector_of_lives_equals_single_lives_up_to_their_ends():
     envs = gymnasium.make_vec("hedon/baseline-v0", num_envs=3, overrides=LIVELY)
     assert isinstance(envs, AgentVectorEnv)
     single = [AgentEnv(CONFIG) for _ in range(3)]
@@ -77,7 +77,7 @@ def test_a_vector_of_lives_is_that_of_single_ones_up_to_their_ends():
         envs.step(np.zeros(3))
 
 
-def test_time_ends_lives_of_a_vector():
+def test_a_time_limit_ends_the_lives_of_a_vector():
     envs = AgentVectorEnv(CONFIG, 2, seed=1, max_steps=7)
     with pytest.raises(ArgumentError, match="call reset first"):
         envs.step(np.zeros((2, 2)))
@@ -125,7 +125,7 @@ def vector_env(kind: str):
 
 
 @pytest.mark.parametrize("kind", ["agent", "slot"])
-def test_wrappers_of_gymnasium_take_it(kind):
+def test_wrappers_of_gymnasium_accept_it(kind):
     envs = vector_env(kind)
     for wrapper in (
         wrappers.RecordEpisodeStatistics,
@@ -150,7 +150,7 @@ def test_wrappers_of_gymnasium_take_it(kind):
 
 
 @pytest.mark.parametrize("kind", ["agent", "slot"])
-def test_copies_and_pickles_go_on_alike(kind):
+def test_copies_and_pickles_continue_alike(kind):
     envs = vector_env(kind)
     envs.reset(seed=4)
     envs.action_space.seed(4)

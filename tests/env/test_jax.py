@@ -1,4 +1,4 @@
-"""Worlds inside programs of JAX, against a plain loop over the same worlds."""
+"""Worlds inside JAX programs, compared with a plain loop over the same worlds."""
 
 import copy
 import gc
@@ -24,12 +24,12 @@ STEPS = 40
 
 
 def act(weights: Any, seen: Any) -> Any:
-    """A policy that needs no function that NumPy and XLA compute differently."""
+    """A policy that uses no function that NumPy and XLA compute differently."""
     return np.float32(0.5) * (seen[..., :2] + weights).clip(-1, 1)
 
 
 def rollout(worlds: Any, weights: Any, steps: int = STEPS) -> Any:
-    """A program: worlds begin, and a scan advances them; returns all that was seen, and the digests at the end."""
+    """Starts worlds and advances them in a scan; returns first observations, results of all steps, and final states."""
 
     def advance(carry: Any, key: Any) -> Any:
         seen, state = carry
@@ -90,7 +90,7 @@ def test_a_scan_is_a_plain_loop(config, species, count, repeat, max_steps):
     assert deaths > 0 or species
 
 
-def test_worlds_begin_again_where_nobody_is_left():
+def test_worlds_restart_when_no_agent_is_left():
     doomed = CONFIG.with_("hazard.alpha_age", 1.0).with_("birth.kappa", 0.0)
     worlds = env.JaxEnv(doomed, 2, threads=1)
     _, (_, ids, _, done, died, alive), _ = rollout(worlds, np.zeros(2, np.float32))
@@ -98,7 +98,7 @@ def test_worlds_begin_again_where_nobody_is_left():
     assert died.any()
     for i, w in zip(*np.nonzero(done), strict=True):
         assert alive[i, w].sum() == 8
-        assert set(ids[i, w][alive[i, w]]) == set(range(8)), "a new world has new ids"
+        assert set(ids[i, w][alive[i, w]]) == set(range(8)), "ids in a new world start at 0"
 
 
 def test_a_seed_gives_the_same_program_on_any_number_of_threads():
@@ -150,7 +150,7 @@ def test_states_of_another_shape_or_type_are_refused(part, change):
 
 
 def test_no_traceback_follows_an_error_that_was_caught():
-    env.JaxEnv(CONFIG)  # compiles the call, which says so
+    env.JaxEnv(CONFIG)  # compiles the call, which prints a message
     program = """
 import jax, numpy as np
 from hedon import env
@@ -237,7 +237,7 @@ def test_a_policy_that_was_trained_in_a_scan_forages_better_than_chance():
 
 
 @pytest.mark.parametrize("actions", ["unit", "force", "logit"])
-def test_spaces_are_of_what_functions_take_and_give(actions):
+def test_spaces_match_what_functions_take_and_return(actions):
     worlds = env.JaxEnv("baseline", actions=actions, overrides=["population.capacity=7", "population.initial_count=3"])
     like = make(worlds.simulation.config, actions=actions)
     observations, _ = worlds.reset(jax.random.key(0))
@@ -290,7 +290,7 @@ def test_params_set_the_length_of_each_world():
         worlds.reset(keys[0], env.JaxParams(jax.numpy.float32(3)))
 
 
-def test_a_log_tells_what_each_life_was_paid():
+def test_a_log_reports_the_reward_of_each_life():
     worlds = env.JaxEnv(CONFIG, 2, threads=1, max_steps=25)
     log = env.JaxLog(worlds)
     rng, keys = np.random.default_rng(0), jax.random.split(jax.random.key(1), 2)
@@ -334,7 +334,7 @@ def test_records_of_a_program_are_runs_and_change_nothing(tmp_path):
         env.JaxEnv(CONFIG, frames=5)
 
 
-def test_a_program_goes_on_only_while_its_records_are_open(tmp_path):
+def test_a_program_continues_only_while_its_records_are_open(tmp_path):
     worlds = env.JaxEnv(CONFIG, record=tmp_path / "run")
     key, action = jax.random.key(0), jax.numpy.zeros((12, 2))
     _, state = worlds.reset(key)

@@ -1,4 +1,4 @@
-"""Environments with neighboring seeds, as Gymnasium and Stable-Baselines3 give them, make worlds of their own."""
+"""Environments with neighboring seeds, as Gymnasium and Stable-Baselines3 assign them, make different worlds."""
 
 import gymnasium
 import numpy as np
@@ -37,7 +37,7 @@ def test_a_vector_of_environments_sees_only_new_worlds():
 
 
 @pytest.mark.parametrize("masked", [False, True])
-def test_later_worlds_follow_from_the_seed_and_a_copy_goes_on_likewise(masked):
+def test_later_worlds_follow_from_the_seed_and_a_copy_continues_likewise(masked):
     worlds = hedon.make("baseline", worlds=3, seed=5, overrides=SMALL)
     worlds.reset()
     options = {"reset_mask": np.array([True, False, True])} if masked else None

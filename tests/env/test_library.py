@@ -1,4 +1,4 @@
-"""Environments by the checkers of the libraries that they are for: Gymnasium, PettingZoo with SuperSuit."""
+"""Environments pass the checkers of the libraries for which they are made: Gymnasium, PettingZoo with SuperSuit."""
 
 import pickle
 import warnings
@@ -30,7 +30,7 @@ GUEST = load_config(
         "species.guest.birth.kappa=0",
     ],
 )
-"""Agents that learn by themselves, and one among them whom the caller drives."""
+"""Agents that learn by themselves, and one among them that the caller drives."""
 
 
 @pytest.mark.parametrize(
@@ -52,7 +52,7 @@ def test_gymnasium_finds_nothing_wrong_with_one_agent(config, species, options):
 
 
 def test_a_life_is_an_episode():
-    """What the agent is paid in an episode is what its life was paid, and it ends at its death."""
+    """The rewards of an episode add up to the reward of a life, and the episode ends at death."""
     env = AgentEnv(GUEST, "guest", seed=1)
     env.action_space.seed(1)
     lives, world, seeds = 0, env.simulation.worlds[0], set()
@@ -83,7 +83,7 @@ def test_a_life_is_an_episode():
     assert world.counters_of("agent")["learners"] > 0 == world.counters_of("guest")["learners"]
 
 
-def test_others_of_the_species_act_by_what_is_given():
+def test_others_of_the_species_follow_the_given_policy():
     forces = []
     for others in (None, lambda seen: np.ones((len(seen), 2), np.float32)):
         env = AgentEnv(CONFIG, others=others)
@@ -120,12 +120,12 @@ def test_wrong_arguments_of_one_agent_are_named():
 @pytest.mark.parametrize("slots", [False, True])
 def test_pettingzoo_finds_nothing_wrong(slots):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # without slots there is no list of possible agents, and newborns are news
+        warnings.simplefilter("ignore")  # without slots, possible agents are not listed, and newborns are new agents
         parallel_api_test(ParallelEnv(CONFIG, slots=slots, repeat=2), num_cycles=100)
         parallel_seed_test(lambda: ParallelEnv(CONFIG, slots=slots), num_cycles=50)
 
 
-def test_a_slot_is_whoever_lives_there():
+def test_a_slot_stands_for_the_agent_that_lives_there():
     world, arrays = ParallelEnv(CONFIG, slots=True, seed=3), make(CONFIG, seed=3, threads=1)
     world.reset()
     group, rng = arrays.groups["agent"], np.random.default_rng(0)
@@ -150,7 +150,7 @@ def test_a_slot_is_whoever_lives_there():
     assert min(seen.values()) > 10
 
 
-def test_all_slots_end_when_nobody_is_left():
+def test_all_slots_end_when_no_agent_is_left():
     doomed = CONFIG.with_("hazard.alpha_age", 0.5).with_("birth.kappa", 0.0)
     world = ParallelEnv(doomed, slots=True)
     world.reset(seed=1)
@@ -167,7 +167,7 @@ def test_all_slots_end_when_nobody_is_left():
 
 
 def test_supersuit_makes_a_vector_of_slots():
-    """SuperSuit's own conversion, for libraries of single agents; it begins again where all slots have ended."""
+    """SuperSuit's own conversion, for single-agent libraries; it restarts when all slots have ended."""
     parallel = ParallelEnv(CONFIG, slots=True, max_steps=20)
     vector: Any = supersuit.pettingzoo_env_to_vec_env_v1(supersuit.frame_stack_v1(parallel, 2))
     observations, _ = vector.reset(seed=1)
@@ -202,8 +202,8 @@ def test_a_world_of_pettingzoo_can_be_copied(slots):
     assert world.simulation.worlds[0].digest() == other.simulation.worlds[0].digest()
 
 
-def test_bounds_hold_what_genes_and_rounding_make():
-    """A capacity that a gene sets, and quotients that 32 bits round up."""
+def test_bounds_allow_for_genes_and_rounding():
+    """A capacity set by a gene, and quotients rounded up in 32 bits."""
     settings = [
         "genome.set.energy.capacity.initial_sd=0.3",
         "energy.initial=30",
@@ -221,8 +221,8 @@ def test_bounds_hold_what_genes_and_rounding_make():
     assert most > 31
 
 
-def test_spaces_are_those_of_what_is_seen_and_done():
-    """Every observation is within its bounds, and those that are finite are reached."""
+def test_spaces_match_observations_and_actions():
+    """Every observation is within its bounds, and rays at walls reach the lower one."""
     both = make("predator", 2, seed=1)
     assert set(both.single_observation_space.spaces) == {"prey", "predator"}
     worlds = make("predator", 2, seed=1, species="prey", actions="force", repeat=20)

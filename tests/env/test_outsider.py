@@ -39,7 +39,7 @@ def test_two_environments_in_two_threads_do_not_disturb_each_other():
         np.testing.assert_array_equal(mine[1], theirs[1])
 
 
-def test_worlds_that_die_out_stand_still_while_others_go_on():
+def test_worlds_that_die_out_stand_still_while_others_continue():
     worlds = make(DOOMED, 6, seed=1, threads=1)
     group = worlds.groups["agent"]
     ends = []
@@ -67,8 +67,8 @@ def test_an_extinct_world_says_so_once_and_then_nothing():
     assert len(world.reset(seed=1)[0]) == 10
 
 
-def test_who_takes_the_slot_of_the_dead_is_someone_else():
-    """Births come before deaths, so an agent cannot die in the step of its birth; slots are used again."""
+def test_a_newborn_in_the_slot_of_a_dead_agent_is_a_new_agent():
+    """Births come before deaths, so an agent cannot die in the step of its birth; slots are reused."""
     worlds = make(CROWD, 4, seed=1, threads=1)
     group = worlds.groups["agent"]
     seen = [set(row[row >= 0]) for row in group.ids]
@@ -96,7 +96,7 @@ def test_it_can_be_wrapped():
 
 
 def test_it_can_be_played_in_turns():
-    """By PettingZoo's own conversion, in a world where nobody is born."""
+    """With PettingZoo's own conversion, in a world without births."""
     aec = parallel_to_aec(ParallelEnv(CONFIG, max_steps=5))
     aec.reset(seed=2)
     acted = 0

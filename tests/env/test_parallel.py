@@ -1,4 +1,4 @@
-"""The environment of PettingZoo's Parallel API, by PettingZoo's own tests and by what it says of a world."""
+"""The environment with PettingZoo's Parallel API, checked by PettingZoo's own tests and against the world itself."""
 
 import warnings
 
@@ -18,7 +18,7 @@ CONFIG = load_config("baseline", overrides=LIVELY)
 
 
 def play(world, steps, seed=7):
-    """Everything that a world says in some steps of random actions."""
+    """All results of a reset and of some steps with random actions."""
     begun = world.reset(seed=seed)
 
     def tell():
@@ -29,7 +29,7 @@ def play(world, steps, seed=7):
 
 def test_it_passes_pettingzoos_tests():
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # there is no list of possible agents, and newborns are news
+        warnings.simplefilter("ignore")  # possible agents are not listed, and newborns are new agents
         parallel_api_test(ParallelEnv(CONFIG), num_cycles=200)
     parallel_seed_test(lambda: ParallelEnv(CONFIG), num_cycles=100)
 
@@ -68,7 +68,7 @@ def test_agents_appear_and_vanish():
     np.testing.assert_array_equal(mine, real.observations())
 
 
-def test_time_may_end():
+def test_a_time_limit_ends_the_world():
     world = ParallelEnv(CONFIG, max_steps=5)
     said = play(world, 5)
     assert all(said[-1][3].values())

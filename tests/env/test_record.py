@@ -1,4 +1,4 @@
-"""Records of driven worlds: the folder of a run, which everything that reads runs takes."""
+"""Records of driven worlds: the folder of a run, which everything that reads runs accepts."""
 
 from pathlib import Path
 from typing import Any
@@ -43,7 +43,7 @@ def drive(out: Path, config: Any, steps: int, **options: Any) -> list[str]:
         (PAIR, "predator", 2),
     ],
 )
-def test_a_folder_is_that_of_a_run(config, species, repeat, tmp_path):
+def test_a_folder_of_records_is_a_run(config, species, repeat, tmp_path):
     out = tmp_path / "run"
     digests = drive(out, config, 200 // repeat, species=species, repeat=repeat)
     run = open_run(out)
@@ -73,7 +73,7 @@ def test_records_change_nothing(tmp_path):
     assert drive(tmp_path / "run", CONFIG, 150) == [world.digest() for world in plain.simulation.worlds]
 
 
-def test_every_death_is_there_however_many_die(tmp_path):
+def test_every_death_is_recorded_however_many_die(tmp_path):
     few = CONFIG.with_("population.initial_count", 8).with_("population.capacity", 10)
     crowd = few.with_("birth.kappa", 1.0).with_("hazard.alpha_age", 0.2).with_("energy.initial", 40.0)
     drive(tmp_path / "run", crowd, 300, repeat=1)
@@ -83,7 +83,7 @@ def test_every_death_is_there_however_many_die(tmp_path):
     assert not check_run(tmp_path / "run").findings
 
 
-def test_a_folder_can_be_read_while_its_worlds_go_on(tmp_path):
+def test_a_folder_can_be_read_while_its_worlds_continue(tmp_path):
     out = tmp_path / "run"
     worlds = make(CONFIG, seed=1, threads=1, record=out, repeat=64)
     worlds.step(worlds.actions)
@@ -111,7 +111,7 @@ def test_a_run_of_a_driver_cannot_be_resumed_and_says_so(tmp_path):
     assert done.returncode == 0, done.stderr
 
 
-def test_no_advice_names_a_command_that_cannot_go_on(tmp_path):
+def test_no_advice_names_a_command_that_cannot_continue(tmp_path):
     killed = make(CONFIG, seed=1, threads=1, record=tmp_path / "killed")
     killed.step(killed.actions)
     told = hedon("check", tmp_path / "killed")
@@ -127,7 +127,7 @@ def test_no_advice_names_a_command_that_cannot_go_on(tmp_path):
     assert "branch" not in broken.stdout + broken.stderr
 
 
-def test_the_records_take_the_dead_and_nobody_else(tmp_path):
+def test_only_the_records_take_the_dead(tmp_path):
     with make(CONFIG, seed=1, threads=1, record=tmp_path / "run") as worlds:
         (world,) = worlds.simulation.worlds
         with pytest.raises(ArgumentError, match="deaths: the world is recorded, and its records take them"):
@@ -166,7 +166,7 @@ def assert_sound(runs: list[Run]) -> None:
         assert rows["steps"].sum() == sum(run.manifest.steps_done) * max(len(run.columns.species), 1)
 
 
-def test_each_life_of_an_agent_is_a_run_of_its_own(tmp_path):
+def test_each_life_of_an_agent_is_a_separate_run(tmp_path):
     mortal = CONFIG.with_("hazard.alpha_age", 0.05)
     env, rng = AgentEnv(mortal, seed=9, record=tmp_path / "run", frames=4), np.random.default_rng(1)
     lengths = []
@@ -177,7 +177,7 @@ def test_each_life_of_an_agent_is_a_run_of_its_own(tmp_path):
             _, _, died, cut, _ = env.step(rng.uniform(-1, 1, 2).astype(np.float32))
             over, steps = died or cut, steps + 1
         lengths.append(steps)
-    env.reset()  # begins no run without a step
+    env.reset()  # starts no run, as no step follows
     env.close()
     runs = runs_of(tmp_path)
     assert [run.path.name for run in runs] == ["run", "run-run2", "run-run3"]
@@ -188,7 +188,7 @@ def test_each_life_of_an_agent_is_a_run_of_its_own(tmp_path):
     assert write_report(runs[1], folder=tmp_path / "report", figures="none")
 
 
-def test_worlds_that_begin_again_one_by_one_are_runs_of_their_own(tmp_path):
+def test_worlds_that_restart_one_by_one_are_separate_runs(tmp_path):
     def drive_both(**record: Any) -> Any:
         envs, rng = AgentVectorEnv(CONFIG, 3, seed=5, max_steps=90, threads=1, **record), np.random.default_rng(2)
         envs.reset(seed=8)
@@ -208,7 +208,7 @@ def test_worlds_that_begin_again_one_by_one_are_runs_of_their_own(tmp_path):
     assert recorded == plain
     runs = runs_of(tmp_path)
     assert runs[0].manifest.seeds == (8, 9, 10)
-    assert len(runs) > 3, "some agents died before their time"
+    assert len(runs) > 3, "some agents died before the time limit"
     assert_sound(runs)
     kept = {seed for run in runs for seed in run.manifest.seeds}
     assert kept == set(plain)

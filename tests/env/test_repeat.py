@@ -1,4 +1,4 @@
-"""A step that holds its actions is as many single steps: rewards, births, deaths, meals and the worlds themselves."""
+"""A step that repeats its actions equals as many single steps: in rewards, births, deaths, meals and worlds."""
 
 from typing import Any
 
@@ -30,11 +30,11 @@ HUNT = (
     "birth.kappa=0.2",
     "hazard.alpha_age=0.05",
 )
-"""Two species, both driven, of which one eats the other."""
+"""Two driven species, one of which eats the other."""
 
 
 class Told:
-    """What single steps say, summed over a repeat by plain Python: by world and id, who was paid what."""
+    """The results of single steps, summed over a repeat in plain Python; rewards are by world and id."""
 
     def __init__(self, group: Any) -> None:
         self.group = group
@@ -57,7 +57,7 @@ class Told:
 
 
 def compare(told: Told, group: Any) -> None:
-    """The same, as one call with a repeat says it."""
+    """Checks that one call with a repeat gives the same results."""
     np.testing.assert_array_equal(group.ids_before, told.before)
     for (w, slot), identity in np.ndenumerate(told.before):
         assert group.rewards[w, slot] == told.paid.get((w, int(identity)), 0)
@@ -77,7 +77,7 @@ def compare(told: Told, group: Any) -> None:
 
 @pytest.mark.parametrize("settings", [CROWD, HUNT], ids=["crowd", "hunt"])
 @pytest.mark.parametrize("repeat", [1, 2, 7, 70])
-def test_a_repeat_is_as_many_single_steps(settings, repeat):
+def test_a_repeat_equals_as_many_single_steps(settings, repeat):
     config = load_config("baseline", overrides=settings)
     single, held = (make(config, 2, seed=1, repeat=each, actions="logit", threads=1) for each in (1, repeat))
     rng = np.random.default_rng(repeat)
@@ -107,7 +107,7 @@ def digests(worlds: VectorEnv) -> list[str]:
     return [world.digest() for world in worlds.simulation.worlds]
 
 
-def test_what_is_told_of_repeats_agrees_with_the_worlds():
+def test_the_results_of_repeats_agree_with_the_worlds():
     """Over many repeats: all births, deaths, meals, and the rewards of whole lives."""
     worlds = make(load_config("baseline", overrides=CROWD), seed=3, repeat=10, threads=1)
     group, world = worlds.groups["agent"], worlds.simulation.worlds[0]

@@ -1,4 +1,4 @@
-"""The example that trains a shared policy by Stable-Baselines3."""
+"""The example that trains a shared policy with Stable-Baselines3."""
 
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -11,7 +11,7 @@ from hedon.view.index import RunIndex
 pytestmark = pytest.mark.long
 
 
-def test_a_shared_policy_of_a_library_forages_better_than_chance_and_can_be_looked_at(tmp_path):
+def test_a_shared_policy_of_a_library_forages_better_than_chance_and_can_be_viewed(tmp_path):
     reason = "needs 5 GB that the project does not install: pip install stable-baselines3"
     pytest.importorskip("stable_baselines3", reason=reason)
     spec = spec_from_file_location("ppo", Path(__file__).parents[2] / "examples" / "ppo.py")

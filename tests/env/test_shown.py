@@ -1,4 +1,4 @@
-"""A window shows what a program does to a world, at the pace of films, and may be closed."""
+"""A window shows what a program does to a world, at the frame rate of a film, and may be closed."""
 
 import copy
 import sys
@@ -16,7 +16,7 @@ CONFIG = hedon.load_config("baseline", overrides=["population.capacity=20", "pop
 
 @pytest.fixture(autouse=True)
 def no_screen(monkeypatch):
-    """pygame draws into memory, where there is no screen."""
+    """Lets pygame draw into memory, so that no screen is needed."""
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     yield
     pygame.display.quit()
@@ -51,7 +51,7 @@ def test_it_is_as_slow_as_a_film():
         assert time.perf_counter() - begun > 9 / PICTURES_PER_SECOND * 0.9
 
 
-def test_who_closes_it_sees_no_more_and_the_steps_go_on():
+def test_a_closed_window_stays_closed_and_the_steps_continue():
     with hedon.make(CONFIG, render_mode="human") as worlds:
         worlds.reset()
         pygame.event.post(pygame.event.Event(pygame.QUIT))
@@ -61,7 +61,7 @@ def test_who_closes_it_sees_no_more_and_the_steps_go_on():
         assert worlds.simulation.worlds[0].step == 3
 
 
-def test_copies_have_no_window_of_another():
+def test_copies_do_not_share_a_window():
     with hedon.make(CONFIG, render_mode="human") as worlds:
         worlds.reset()
         other = copy.deepcopy(worlds)

@@ -1,4 +1,4 @@
-"""Slots as environments of Stable-Baselines3, by its own checker and training, and against the arrays."""
+"""Slots as environments of Stable-Baselines3, tested by its own checker and training, and against the arrays."""
 
 import warnings
 from typing import Any
@@ -26,7 +26,7 @@ def test_its_checker_finds_nothing_wrong():
 
 
 def test_an_episode_is_a_life():
-    """What an episode was paid, and how long it was, is what the engine says of the life; empty slots have none."""
+    """The reward and the length of an episode are those of the life in the engine; empty slots have no episode."""
     slots, rng = env.SlotVecEnv(make(CONFIG, 2, seed=3, threads=1)), np.random.default_rng(0)
     group, simulation = slots.group, slots.worlds.simulation
     assert slots.reset().shape == (60, 95)
@@ -62,7 +62,7 @@ def test_an_episode_is_a_life():
 
 
 @pytest.mark.parametrize(("alpha", "max_steps"), [(0.01, 25), (1.0, 0)], ids=["time", "everyone"])
-def test_worlds_begin_again_where_time_or_everyone_is_over(alpha, max_steps):
+def test_worlds_restart_when_time_is_up_or_all_agents_are_dead(alpha, max_steps):
     brief = CONFIG.with_("hazard.alpha_age", alpha).with_("birth.kappa", 0.0)
     slots = env.SlotVecEnv(make(brief, 3, seed=5, max_steps=max_steps, threads=1))
     slots.reset()
@@ -94,7 +94,7 @@ def test_worlds_begin_again_where_time_or_everyone_is_over(alpha, max_steps):
     assert (cut > 5, extinct > 5) == (bool(max_steps), not max_steps)
 
 
-def test_it_trains_and_what_it_learned_acts():
+def test_it_trains_and_the_trained_policy_acts():
     worlds = make(CONFIG, 2, seed=1, repeat=4, max_steps=200, threads=1)
     slots = vector.VecNormalize(vector.VecMonitor(env.SlotVecEnv(worlds)), norm_reward=False)
     model = library.PPO("MlpPolicy", slots, n_steps=32, batch_size=480, n_epochs=1, seed=1, device="cpu").learn(60 * 64)
@@ -120,7 +120,7 @@ def test_seeds_are_those_that_a_library_gives():
     assert slots.worlds.simulation.seeds == later
 
 
-def test_what_slots_do_not_have_is_named():
+def test_features_that_slots_lack_are_named():
     slots: Any = env.SlotVecEnv(make(CONFIG, 2))
     assert slots.get_attr("repeat", [0, 3]) == [1, 1]
     assert slots.env_is_wrapped(vector.VecMonitor) == [False] * 60

@@ -1,4 +1,4 @@
-"""Environments without a seed differ from one another, and tell the seeds that they drew."""
+"""Environments without a seed differ from one another, and report the seeds that they drew."""
 
 from typing import Any
 
@@ -30,7 +30,7 @@ def test_unseeded_environments_differ(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_options_that_are_none_are_named(kind):
+def test_invalid_options_are_named(kind):
     with pytest.raises(ArgumentError, match="options = 5: must be a dict"):
         KINDS[kind](0).reset(options=5)
 

@@ -1,4 +1,4 @@
-"""Worlds as values: saved, restored, cloned, copied and pickled, they go on with the same bits."""
+"""Worlds as values: saved, restored, cloned, copied and pickled, they continue with the same bits."""
 
 import pickle
 import random
@@ -28,7 +28,7 @@ def test_a_copy_goes_on_alone(way, steps, settings):
     assert (other.seeds, other.config) == (one.seeds, one.config)
     at = digests(one)
     one.run(90)
-    assert digests(other) == at, "a copy has worlds of its own"
+    assert digests(other) == at, "a copy has its own worlds"
     other.run(90)
     assert digests(other) == digests(one) != at
     for mine, theirs in zip(one.worlds, other.worlds, strict=True):
@@ -37,7 +37,7 @@ def test_a_copy_goes_on_alone(way, steps, settings):
             np.testing.assert_array_equal(values, theirs.agents()[name])
 
 
-def test_a_world_goes_back_and_takes_its_seeds_along():
+def test_restored_worlds_bring_their_seeds_along():
     one, other = make_simulation(*LIVELY, seeds=(3, 8)), make_simulation(*LIVELY, seeds=(1, 2), threads=2)
     one.run(70)
     kept = one.save()
@@ -54,7 +54,7 @@ def test_a_world_goes_back_and_takes_its_seeds_along():
 
 @pytest.mark.parametrize("preset", ["baseline", "predator", "pitfall"])
 def test_a_reset_is_a_new_simulation(preset):
-    """Whatever lived there before leaves nothing."""
+    """Nothing remains of what lived there before."""
     used = make_simulation(*QUICK, preset=preset, seeds=(1, 2))
     used.run(100)
     used.reset([7, 9])
@@ -68,7 +68,7 @@ def test_a_reset_is_a_new_simulation(preset):
         used.reset([1])
 
 
-def test_another_process_goes_on(tmp_path):
+def test_another_process_continues_a_pickled_simulation(tmp_path):
     simulation = make_simulation(*LIVELY)
     simulation.run(100)
     file = tmp_path / "world.pickle"
@@ -80,8 +80,8 @@ def test_another_process_goes_on(tmp_path):
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
-def test_a_world_with_a_rule_goes_on_by_its_text(way, tmp_path):
-    """Also where the file is gone, or says something else by then."""
+def test_a_world_with_a_rule_continues_with_the_saved_text(way, tmp_path):
+    """Even if the file is gone or has changed by then."""
     pytest.importorskip("numba", reason='needs the optional package: pip install "hedon[rules]"')
     file = tmp_path / "own.py"
     file.write_text("def pay(agent):\n    return agent.linear + 0.5 * agent.moved\n")
@@ -100,7 +100,7 @@ def test_a_world_with_a_rule_goes_on_by_its_text(way, tmp_path):
 
 
 def play(worlds: VectorEnv, steps: int, seed: int) -> list[Any]:
-    """Everything that worlds say in some steps."""
+    """All arrays and digests of worlds after each of some steps."""
     rng, told = np.random.default_rng(seed), []
     for _ in range(steps):
         for group in worlds.groups.values():
@@ -132,8 +132,8 @@ def test_a_copy_of_driven_worlds_goes_on_alone(way, species, repeat):
 
 
 @pytest.mark.parametrize("stop", [1, 3, 6])
-def test_worlds_are_whole_where_ctrl_c_ends_a_repeat(stop, monkeypatch):
-    """Nothing of the steps that were done is lost, and they can be kept and gone on from."""
+def test_worlds_are_intact_when_ctrl_c_ends_a_repeat(stop, monkeypatch):
+    """None of the completed steps is lost, and the worlds can be saved and continued."""
     config = load_config("baseline", overrides=LIVELY)
     single, held = (make(config, 2, seed=0, repeat=repeat, threads=1) for repeat in (1, 7))
     paid, first = np.zeros_like(single.rewards), single.groups["agent"].ids.copy()
@@ -196,7 +196,7 @@ WRONG: dict[str, tuple[Callable[[bytes], Any], str]] = {
 
 
 @pytest.mark.parametrize(("wrong", "says"), WRONG.values(), ids=WRONG)
-def test_what_is_no_such_world_is_refused_in_one_sentence(wrong, says):
+def test_what_is_not_a_saved_world_is_refused_in_one_sentence(wrong, says):
     simulation = make_simulation(*LIVELY, seeds=(1, 2))
     simulation.run(70)
     kept = simulation.save()
@@ -218,7 +218,7 @@ def test_another_version_is_refused_by_its_name(monkeypatch):
 
 
 def forged(kept: bytes, draw: random.Random) -> bytes:
-    """The bytes with some numbers changed, and the hash that they then should have."""
+    """The bytes with some of them changed, and a hash that matches."""
     raw = bytearray(kept)
     for _ in range(draw.randint(1, 3)):
         at = draw.randrange(16, len(raw))
@@ -251,7 +251,7 @@ def hash_of(data: bytes) -> int:
 
 
 def test_forged_worlds_are_refused_or_do_no_harm():
-    """With a hash that agrees, what counts is what the engine checks: all worlds before any is changed."""
+    """With a matching hash, only the engine's checks are left: it checks all worlds before it changes any."""
     few = (*LIVELY, "population.capacity=4", "population.initial_count=3", 'learning.policy="random"')
     source, target = (make_simulation(*few, seeds=(1, 2)) for _ in range(2))
     source.run(70)
@@ -305,7 +305,7 @@ def test_driven_worlds_refuse_what_is_not_theirs(wrong, says):
     assert everything(worlds) == before
 
 
-def test_the_bytes_of_driven_worlds_hold_worlds():
+def test_a_simulation_can_restore_the_bytes_of_driven_worlds():
     worlds = make(load_config("baseline", overrides=PAIR), 2, species="led")
     play(worlds, 5, 0)
     simulation = Simulation(worlds.config, worlds.simulation.seeds)
@@ -313,7 +313,7 @@ def test_the_bytes_of_driven_worlds_hold_worlds():
     assert digests(simulation) == digests(worlds)
 
 
-def test_an_array_that_is_not_there_is_named():
+def test_a_missing_array_is_named():
     world = make_simulation(*QUICK, seeds=(1,)).worlds[0]
     with pytest.raises(
         ArgumentError, match=r"view: the state has no array 'life\.energgy'; did you mean life\.energy\?"

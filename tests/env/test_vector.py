@@ -1,4 +1,4 @@
-"""The arrays of many driven worlds: what they hold, against the worlds themselves."""
+"""The arrays of many driven worlds, compared with the worlds themselves."""
 
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -32,7 +32,7 @@ def act(group, rng):
     group.actions[...] = rng.standard_normal(group.actions.shape)
 
 
-def test_observations_are_those_of_the_world():
+def test_observations_match_the_world():
     worlds = make(config(*LIVELY), 2, seed=1, actions=LOGIT, threads=2)
     agents = worlds.groups["agent"]
     rng = np.random.default_rng(0)
@@ -48,7 +48,7 @@ def test_observations_are_those_of_the_world():
 
 
 def test_agents_do_what_they_are_told():
-    """Told what a learning world did, a driven one goes the same way."""
+    """A driven world that repeats the actions of a learning world takes the same course."""
     settings = (*QUICK, *DEATHLESS, *CHILDLESS)
     learner = make_simulation(*settings, seeds=(5,))
     worlds = make(config(*settings), seed=5, actions=LOGIT, threads=1)
@@ -64,7 +64,7 @@ def test_agents_do_what_they_are_told():
     np.testing.assert_allclose(rewards[0, world.living], world.agents()["reward"], rtol=1e-4, atol=1e-7)
 
 
-def test_births_and_deaths_come_and_go():
+def test_births_and_deaths_appear_in_the_arrays():
     worlds = make(config(*LIVELY), seed=3, actions=LOGIT, threads=1)
     agents = worlds.groups["agent"]
     rng = np.random.default_rng(0)
@@ -106,7 +106,7 @@ def test_threads_change_nothing_and_a_reset_begins_again():
     assert ends[0] == ends[1] == ends[2]
 
 
-def test_others_learn_beside_those_that_are_driven():
+def test_other_species_learn_while_one_is_driven():
     worlds = make(config(*PAIR), seed=1, species=["led"], repeat=128)
     group = worlds.groups["led"]
     assert list(worlds.groups) == ["led"]
