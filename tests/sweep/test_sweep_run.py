@@ -1,4 +1,4 @@
-"""A sweep gives the same table whoever runs it, and however often it is killed."""
+"""A sweep gives the same table, no matter what runs it and how often it is killed."""
 
 import json
 import os
