@@ -1,4 +1,4 @@
-"""Which agent eats which if every agent may eat every other: crowds with random headings, compared with plain Python."""
+"""Which agent eats which if any agent may eat any other: crowds with random headings, compared with plain Python."""
 
 import numpy as np
 import pytest
