@@ -184,6 +184,10 @@ class Rule:
 def rules(config: Config, kept: Sequence[RuleSource] = ()) -> tuple[Rule, ...]:
     """The rules of a config.
 
+    Args:
+        config: The config.
+        kept: Texts of the rules that it is pinned to, such as a manifest's; all others are read from their files.
+
     Raises:
         RuleError: A file is missing or cannot be read, or is not the one that the config was pinned to.
     """
