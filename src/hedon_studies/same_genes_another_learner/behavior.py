@@ -27,10 +27,12 @@ from hedon_studies.same_genes_another_learner.landscape import ACTION, ARMS, FOO
 from hedon_studies.same_genes_another_learner.named_test import named_test
 
 LEARNERS = ("slow", "baseline", "fast")
-STEPS, EVERY, LATE = 20_480, 1_024, 8_192
+STEPS, EVERY, EARLY, LATE = 20_480, 1_024, 6_144, 8_192
 NEAR = 0.5
 """Reading of a ray that sees food in half of its reach."""
 IMMORTAL = ("genome.mutation_scale=0", "hazard.kappa=0", "hazard.alpha_age=0", "birth.kappa=0")
+CHANGES = (("early", "intake"), ("late", "intake"), ("early", "steering"), ("early", "value"))
+"""Windows and measures of the secondary tests."""
 
 Floats = NDArray[np.floating[Any]]
 
@@ -123,7 +125,8 @@ def world_rows(learner: str, seed: int, steps: int = STEPS) -> Iterator[dict[str
 def named_tests(rows: pl.DataFrame) -> pl.DataFrame:
     """The primary test and the secondary tests, in the order of expected.md.
 
-    All refer to means over the last `LATE` steps, from the baseline to the fast learner in worlds with equal seeds.
+    All are about changes from the baseline to the fast learner, in worlds with equal seeds, of means over the first
+    `EARLY` or the last `LATE` steps.
 
     Args:
         rows: Rows from `world_rows` of all worlds.
@@ -131,20 +134,19 @@ def named_tests(rows: pl.DataFrame) -> pl.DataFrame:
     Returns:
         One row per test, with the columns of `named_test`, and "p_holm", which is null for the primary test.
     """
-    late = rows.filter(pl.col("step") > pl.col("step").max() - LATE)
-    means = late.group_by("learner", "measure", "seed").agg(pl.col(SIGHT, FOOD, "mean").mean()).sort("seed")
+    windows = {"early": pl.col("step") <= EARLY, "late": pl.col("step") > pl.col("step").max() - LATE}
 
-    def change(measure: str, column: str) -> NDArray[np.float64]:
-        worlds = means.filter(pl.col("measure") == measure)
-        after, before = (worlds.filter(pl.col("learner") == learner) for learner in ("fast", "baseline"))
-        paired = before.join(after, on="seed", suffix="_after").sort("seed")
-        return (paired[f"{column}_after"] - paired[column]).to_numpy()
+    def change(window: str, measure: str, gene: str) -> NDArray[np.float64]:
+        steps = rows.filter(windows[window]).filter(pl.col("measure") == measure)
+        means = steps.group_by("learner", "seed").agg(pl.col(gene).mean())
+        paired = means.pivot(on="learner", index="seed", values=gene).sort("seed")
+        return (paired["fast"] - paired["baseline"]).to_numpy()
 
-    steering = change("steering", SIGHT) - change("steering", FOOD)
-    tests = [named_test("primary: steering, sight less food", steering)]
+    difference = change("early", "intake", SIGHT) - change("early", "intake", FOOD)
+    tests = [named_test("primary: early intake, sight less food", difference)]
     tests += [
-        named_test(f"{measure}, {name}", change(measure, gene))
-        for measure in ("steering", "value")
+        named_test(f"{window} {measure}, {name}", change(window, measure, gene))
+        for window, measure in CHANGES
         for name, gene in (("sight", SIGHT), ("food", FOOD))
     ]
     corrected = [None, *holm([test["p_sign_flip"] for test in tests[1:]])]

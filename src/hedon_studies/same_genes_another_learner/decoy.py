@@ -1,6 +1,6 @@
 """Part D: which rewards and which learners does a decoy mislead?
 
-A decoy looks like food, and nobody can eat it. Genomes that evolved in part B live with decoys and without.
+A decoy looks like food, and no agent can eat it. Genomes that evolved in part B live with decoys and without.
 transplant.py describes `python -m hedon_studies.same_genes_another_learner.decoy`.
 """
 
@@ -67,11 +67,13 @@ def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
         One row per test, with the columns of `named_test`, and "p_holm", which is null for the primary test.
     """
     loss = losses(worlds)
-    by_learner = [(loss["slow", learner] + loss["fast", learner]) / 2 for learner in ("fast", "slow")]
-    by_genes = [(loss[genes, "slow"] + loss[genes, "fast"]) / 2 for genes in ("fast", "slow")]
+    misled = {learner: loss["fast", learner] - loss["slow", learner] for learner in ARMS}
+    by_learner = {learner: (loss["slow", learner] + loss["fast", learner]) / 2 for learner in ARMS}
     rows = [
-        named_test("primary: loss of intake, fast less slow learner", by_learner[0] - by_learner[1]),
-        named_test("loss of intake, fast-evolved less slow-evolved", by_genes[0] - by_genes[1]),
+        named_test("primary: loss of intake, fast less slow learner", by_learner["fast"] - by_learner["slow"]),
+        named_test("loss of intake, fast-evolved less slow-evolved, slow learner", misled["slow"]),
+        named_test("loss of intake, fast-evolved less slow-evolved, fast learner", misled["fast"]),
+        named_test("the same difference, fast less slow learner", misled["fast"] - misled["slow"]),
         *(
             named_test(f"loss of intake, {genes}-evolved, {learner} learner", each)
             for (genes, learner), each in loss.items()

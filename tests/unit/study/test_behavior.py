@@ -55,7 +55,7 @@ def test_slopes_are_those_of_the_genes() -> None:
 
 
 def answers(sight: float, food: float, worlds: int = 30) -> pl.DataFrame:
-    """Rows of worlds in which the fast learner's slopes exceed the baseline's by these numbers, only late."""
+    """Rows of worlds in which the fast learner's slopes exceed the baseline's by these numbers, only early."""
     rng = np.random.default_rng(2)
     return pl.DataFrame(
         {
@@ -64,21 +64,23 @@ def answers(sight: float, food: float, worlds: int = 30) -> pl.DataFrame:
             "step": step,
             "measure": measure,
             "mean": 0.0,
-            SIGHT: 0.1 + rng.normal(0, 0.01) + sight * (learner == "fast" and step > 12_288),
-            FOOD: 0.1 + rng.normal(0, 0.01) + food * (learner == "fast" and step > 12_288),
+            SIGHT: 0.1 + rng.normal(0, 0.01) + sight * (learner == "fast" and step <= behavior.EARLY),
+            FOOD: 0.1 + rng.normal(0, 0.01) + food * (learner == "fast" and step <= behavior.EARLY),
         }
         for learner in ("baseline", "fast")
         for seed in range(worlds)
-        for step in (12_288, 20_480)
-        for measure in ("steering", "value")
+        for step in (behavior.EARLY, behavior.STEPS)
+        for measure in ("intake", "steering", "value")
     )
 
 
 def test_a_steeper_slope_on_sight_alone_is_found_and_one_on_both_is_not() -> None:
-    turned = behavior.named_tests(answers(0.05, 0.0))
-    assert turned["test"].len() == 5
-    assert turned.row(0, named=True)["effect"] == pytest.approx(0.05, abs=0.01)
-    assert turned.row(0, named=True)["low"] > 0
+    turned = {row["test"]: row for row in behavior.named_tests(answers(0.05, 0.0)).iter_rows(named=True)}
+    primary = turned["primary: early intake, sight less food"]
+    assert primary["effect"] == pytest.approx(0.05, abs=0.01)
+    assert primary["low"] > 0
+    assert turned["early steering, sight"]["low"] > 0
+    assert turned["late intake, sight"]["low"] < 0 < turned["late intake, sight"]["high"]
     larger = behavior.named_tests(answers(0.05, 0.05)).row(0, named=True)
     assert larger["low"] < 0 < larger["high"]
 
@@ -92,4 +94,4 @@ def test_worlds_are_simulated_and_tested(tmp_path: Path, capsys: pytest.CaptureF
         (seed, 1024, measure) for seed in (1, 2) for measure in ("intake", "steering", "approach", "value")
     ]
     behavior.main(["tests", str(tmp_path / "baseline.csv"), str(tmp_path / "fast.csv")])
-    assert "primary: steering" in capsys.readouterr().out
+    assert "primary: early intake" in capsys.readouterr().out

@@ -96,8 +96,16 @@ def decoyed(loss: dict[tuple[str, str], float], pairs: int = 30) -> pl.DataFrame
 def test_a_loss_by_learners_is_told_from_a_loss_by_genes() -> None:
     loss = {("slow", "slow"): 0.1, ("slow", "fast"): 0.3, ("fast", "slow"): 0.1, ("fast", "fast"): 0.3}
     tests = decoy.named_tests(decoyed(loss))
-    learner, genes = tests.row(0, named=True), tests.row(1, named=True)
+    learner, *genes = tests.head(4).iter_rows(named=True)
     assert learner["effect"] == pytest.approx(0.2, abs=0.02)
     assert learner["low"] > 0
-    assert genes["low"] < 0 < genes["high"]
-    assert tests["test"].len() == 6
+    assert all(each["low"] < 0 < each["high"] for each in genes)
+    assert tests["test"].len() == 8
+
+
+def test_genes_that_mislead_only_one_learner_are_found() -> None:
+    loss = {("slow", "slow"): 0.1, ("slow", "fast"): 0.0, ("fast", "slow"): 0.2, ("fast", "fast"): 0.0}
+    slow, fast, difference = decoy.named_tests(decoyed(loss)).slice(1, 3).iter_rows(named=True)
+    assert slow["effect"] == pytest.approx(0.1, abs=0.02)
+    assert fast["low"] < 0 < fast["high"]
+    assert difference["effect"] == pytest.approx(-0.1, abs=0.02)
