@@ -64,7 +64,7 @@ class Part:
         treatments: Its treatments, by name.
         pairs: Number of pairs: the first ones in which both worlds survived.
         steps: Length of each world [step].
-        seed_shift: Seed of a world, less that of its pair in part B.
+        seed_shift: Seed of a world minus the seed of its pair in part B.
         measure: The measures of a world, given its record and its founders.
         named_tests: The tests of all worlds, the rows of `worlds.csv`.
     """
@@ -136,7 +136,7 @@ class Part:
                     pair = world.seed - self.seed_shift
                     founders = treatment.founders(living, pair)
                     if world.config.world.founders != founders.digest:
-                        raise ValueError(f"{path}: its founders are not those of pair {pair}")
+                        raise ValueError(f"{path}: pair {pair} has other founders")
                     ends = {"steps": world.last_step, "extinct_step": world.extinct_step}
                     measures = self.measure(world, founders)
                     rows.append({"treatment": name, "pair": pair, **ends, **measures, **provenance(world, run)})
