@@ -22,7 +22,7 @@ import hedon
 from hedon.assay import Spread, spread_founders
 from hedon.config import Config, load_config
 from hedon.statistic import holm
-from hedon_studies.same_genes_another_learner.evolution import PRESET, SEEN
+from hedon_studies.same_genes_another_learner.evolution import PRESET, SEEN, require_files
 from hedon_studies.same_genes_another_learner.landscape import ACTION, ARMS, FOOD, SIGHT
 from hedon_studies.same_genes_another_learner.named_test import named_test
 
@@ -173,6 +173,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             options.file
         )
     else:
+        require_files(parser, options.file)
         with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=60, tbl_width_chars=160):
             print(named_tests(pl.concat(map(pl.read_csv, options.file))))
 

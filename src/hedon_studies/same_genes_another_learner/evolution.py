@@ -180,6 +180,13 @@ def neutral_control(worlds: pl.DataFrame) -> pl.DataFrame:
     )
 
 
+def require_files(parser: argparse.ArgumentParser, paths: Iterable[Path]) -> None:
+    """Ends the program with a message and exit code 2 if a file is missing."""
+    for path in paths:
+        if not path.is_file():
+            parser.error(f"{path}: there is no such file")
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Reduces runs to tables, or prints the tests of such tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -192,6 +199,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.verb == "worlds":
         reduce_runs(options.run, options.out)
         return
+    require_files(parser, [options.folder / WORLDS])
     worlds = pl.read_csv(options.folder / WORLDS)
     means = ["alive_all_steps", "mean_lifetime", "food_per_step", "generation", SIGHT, FOOD, ACTION]
     with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=48, tbl_width_chars=160):

@@ -20,7 +20,15 @@ import hedon
 from hedon.analysis import WorldRecord, read_worlds
 from hedon.config import Config, load_config
 from hedon.record import Founders, make_founders, open_run
-from hedon_studies.same_genes_another_learner.evolution import ARMS, EVOLVING, LIVING, PRESET, WORLDS, provenance
+from hedon_studies.same_genes_another_learner.evolution import (
+    ARMS,
+    EVOLVING,
+    LIVING,
+    PRESET,
+    WORLDS,
+    provenance,
+    require_files,
+)
 
 
 @dataclass(frozen=True)
@@ -88,6 +96,10 @@ class Part:
         verbs.choices["worlds"].add_argument("folder", type=Path)
         verbs.add_parser("tests").add_argument("folder", type=Path)
         options = parser.parse_args(arguments)
+        if options.verb == "tests":
+            require_files(parser, [options.folder / WORLDS])
+        else:
+            require_files(parser, [options.evolution / LIVING, options.evolution / WORLDS])
         if options.verb == "run":
             self.run(options.evolution, options.runs, options.only)
         elif options.verb == "worlds":

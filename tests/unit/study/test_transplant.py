@@ -1,5 +1,6 @@
 """Parts C and D of the study of another learner: evolved genomes compete, and live with decoys."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import polars as pl
 import pytest
 
 import hedon
-from hedon_studies.same_genes_another_learner import decoy, evolution, swap
+from hedon_studies.same_genes_another_learner import behavior, decoy, evolution, swap
 from hedon_studies.same_genes_another_learner.study import LEARNERS
 from hedon_studies.same_genes_another_learner.transplant import Part
 
@@ -44,6 +45,18 @@ def test_worlds_of_evolved_genomes_are_run_and_reduced(
     (evolved.parent / evolution.WORLDS).write_bytes((evolved / evolution.WORLDS).read_bytes())
     with pytest.raises(ValueError, match=f"pair {PAIR} has other founders"):
         short.main("", ["worlds", str(evolved.parent), str(tmp_path / "runs"), str(tmp_path)])
+
+
+@pytest.mark.parametrize("words", [["run", "no", "runs"], ["worlds", "no", "runs", "."], ["tests", "no"]], ids=" ".join)
+def test_a_missing_table_is_named(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        swap.PART.main("", words)
+    assert ended.value.code == 2
+    assert re.search(r"error: no.(living\.parquet|worlds\.csv): there is no such file", capsys.readouterr().err)
+    for main, arguments in ((evolution.main, ["tests", "no"]), (behavior.main, ["tests", "no.csv"])):
+        with pytest.raises(SystemExit):
+            main(arguments)
+        assert "there is no such file" in capsys.readouterr().err
 
 
 def test_both_sides_of_a_contest_start_with_half(evolved: Path) -> None:
