@@ -21,10 +21,9 @@ from numpy.typing import NDArray
 import hedon
 from hedon.assay import Spread, spread_founders
 from hedon.config import Config, load_config
-from hedon.statistic import holm
 from hedon_studies.same_genes_another_learner.evolution import PRESET, SEEN, require_files
 from hedon_studies.same_genes_another_learner.landscape import ACTION, ARMS, FOOD, SIGHT
-from hedon_studies.same_genes_another_learner.named_test import named_test
+from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
 
 LEARNERS = ("slow", "baseline", "fast")
 STEPS, EVERY, EARLY, LATE = 20_480, 1_024, 6_144, 8_192
@@ -149,10 +148,7 @@ def named_tests(rows: pl.DataFrame) -> pl.DataFrame:
         for window, measure in CHANGES
         for name, gene in (("sight", SIGHT), ("food", FOOD))
     ]
-    corrected = [None, *holm([test["p_sign_flip"] for test in tests[1:]])]
-    return pl.DataFrame(
-        [test | {"p_holm": p} for test, p in zip(tests, corrected, strict=True)], infer_schema_length=None
-    )
+    return holm_table(tests)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

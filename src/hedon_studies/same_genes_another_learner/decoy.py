@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from hedon.analysis import WorldRecord, food_per_agent_step, mean_alive
 from hedon.record import Founders
-from hedon.statistic import holm
 from hedon_studies.same_genes_another_learner.evolution import ARMS
-from hedon_studies.same_genes_another_learner.named_test import named_test
+from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
 from hedon_studies.same_genes_another_learner.transplant import Part, Treatment
 
 DECOY = (
@@ -79,8 +78,7 @@ def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
             for (genes, learner), each in loss.items()
         ),
     ]
-    corrected = [None, *holm([row["p_sign_flip"] for row in rows[1:]])]
-    return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
+    return holm_table(rows)
 
 
 def _name(genes: str, learner: str, decoys: str) -> str:

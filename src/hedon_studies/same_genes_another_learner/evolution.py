@@ -24,9 +24,8 @@ from hedon.analysis import (
 )
 from hedon.measure import MEASURES
 from hedon.record import Run, open_run
-from hedon.statistic import holm
 from hedon_studies.same_genes_another_learner.landscape import ACTION, FOOD, SIGHT
-from hedon_studies.same_genes_another_learner.named_test import named_test
+from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
 
 PRESET = "appetite"
 SEEN = "reward.pay.see_normal.coef=0.2"
@@ -163,8 +162,7 @@ def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
             named_test(f"{gene}, {arm}, against drift [sd]", arm_rows[f"{gene}_score"].to_numpy())
             for gene in (SIGHT, FOOD)
         ]
-    corrected = [None, *holm([row["p_sign_flip"] for row in rows[1:]])]
-    return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
+    return holm_table(rows)
 
 
 def neutral_control(worlds: pl.DataFrame) -> pl.DataFrame:

@@ -13,8 +13,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from hedon.statistic import holm
-from hedon_studies.same_genes_another_learner.named_test import named_test
+from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
 
 ARMS: dict[str, str] = {
     "baseline": "",
@@ -130,8 +129,7 @@ def named_tests(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     rows = [named_test("primary: baseline to fast", direction_change(arms["baseline"], arms["fast"]))]
     rows += [named_test(f"{a} to {b}", direction_change(arms[a], arms[b])) for a, b in CHANGES]
     rows += [named_test(f"hump, {name}", hump(arms[name])["hump"].drop_nulls().to_numpy()) for name in HUMPS]
-    corrected = [None, *holm([row["p"] for row in rows[1:]])]
-    return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
+    return holm_table(rows, p="p")
 
 
 def neutral_control(arms: Mapping[str, pl.DataFrame]) -> pl.DataFrame:

@@ -1,12 +1,14 @@
 """The test in all parts of the study: is the mean over worlds, or over pairs of worlds, 0?"""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import polars as pl
 from lazy_loader import load
 from numpy.typing import NDArray
 
-from hedon.statistic import LEVEL, paired_contrast
+from hedon.statistic import LEVEL, holm, paired_contrast
 
 stats: Any = load("scipy.stats", suppress_warning=True)
 
@@ -38,3 +40,19 @@ def named_test(name: str, values: NDArray[np.float64]) -> dict[str, Any]:
         "p": float(np.asarray(result)[1]),
         "p_sign_flip": paired_contrast(np.zeros_like(values), values).p,
     }
+
+
+def holm_table(tests: Sequence[dict[str, Any]], p: str = "p_sign_flip") -> pl.DataFrame:
+    """The tests of one part of the study, the primary test first.
+
+    Args:
+        tests: Rows from `named_test`.
+        p: Column with the p value that is corrected.
+
+    Returns:
+        One row per test, with "p_holm": Holm's correction over the secondary tests; null for the primary test.
+    """
+    corrected = [None, *holm([test[p] for test in tests[1:]])]
+    return pl.DataFrame(
+        [test | {"p_holm": each} for test, each in zip(tests, corrected, strict=True)], infer_schema_length=None
+    )

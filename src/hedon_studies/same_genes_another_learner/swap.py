@@ -11,9 +11,8 @@ import polars as pl
 from hedon.analysis import WorldRecord
 from hedon.assay import by_descent, world_lines
 from hedon.record import Founders
-from hedon.statistic import holm
 from hedon_studies.same_genes_another_learner.evolution import ARMS
-from hedon_studies.same_genes_another_learner.named_test import named_test
+from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
 from hedon_studies.same_genes_another_learner.transplant import Part, Treatment
 
 
@@ -48,8 +47,7 @@ def named_tests(worlds: pl.DataFrame) -> pl.DataFrame:
         named_test("share of the fast-evolved less 1/2, fast learner", fast - 0.5),
         named_test("share of the fast-evolved less 1/2, slow learner", slow - 0.5),
     ]
-    corrected = [None, *holm([row["p_sign_flip"] for row in rows[1:]])]
-    return pl.DataFrame([row | {"p_holm": p} for row, p in zip(rows, corrected, strict=True)], infer_schema_length=None)
+    return holm_table(rows)
 
 
 PART = Part(

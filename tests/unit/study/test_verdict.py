@@ -1,5 +1,6 @@
 import dataclasses
 import math
+import re
 from types import SimpleNamespace
 from typing import Any
 
@@ -55,6 +56,20 @@ def test_rules(worlds: list[WorldRecord]) -> None:
     two = judge(claim([-1.0, -1.1, -0.9, -1.05, -0.95, -1.01, 5, 5.1, 4.9, 5.05, 4.95, 5.01], "modes"), "c", worlds)
     assert two.verdict == "holds"
     assert two.reason.startswith("6 worlds around -1.00, 6 around 5.00; dip test: p = 0.0")
+
+
+def test_a_measure_that_fails_leaves_its_claim_undecided(worlds: list[WorldRecord]) -> None:
+    def fail(world: WorldRecord) -> float:
+        raise ValueError(f"no figure of {world.seed}")
+
+    condition = Condition("baseline")
+    single = Claim("a", condition, "text", fail, "mean", "0")
+    order = Order("b", condition, condition, "text", fail, "difference", "0")
+    known = Claim("c", condition, "text", lambda world: 1.0, "mean", "0", low=0.0)
+    found = {row.claim: row for row in verdicts(worlds, [single, order, known])}
+    assert {found["a"].verdict, found["b"].verdict} == {"undecided"}
+    assert all(re.search(r"its measure failed: ValueError: no figure of 1 \(line \d+", found[n].reason) for n in "ab")
+    assert (found["c"].value, found["c"].worlds) == (1.0, 12)
 
 
 def test_six_of_six_worlds_decide(worlds: list[WorldRecord]) -> None:
