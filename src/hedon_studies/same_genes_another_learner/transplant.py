@@ -3,7 +3,7 @@
 The founders of a pair come from the agents alive at the end of its two worlds in part B, the rows of `living.parquet`.
 Each part is a program with three verbs, where EVOLUTION is the folder with the tables of part B:
 
-- `run EVOLUTION RUNS` simulates the worlds of all treatments, or only of those that `--only` names;
+- `run EVOLUTION RUNS` simulates the worlds of all treatments, or only of the ones in `--only`;
 - `worlds EVOLUTION RUNS FOLDER` reduces these runs to `worlds.csv`, a row per world;
 - `tests FOLDER` prints the tests named in expected.md.
 """
@@ -92,7 +92,7 @@ class Part:
             child = verbs.add_parser(verb)
             child.add_argument("evolution", type=Path)
             child.add_argument("runs", type=Path)
-            child.add_argument("--only", choices=self.treatments, nargs="+", default=list(self.treatments))
+        verbs.choices["run"].add_argument("--only", choices=self.treatments, nargs="+", default=list(self.treatments))
         verbs.choices["worlds"].add_argument("folder", type=Path)
         verbs.add_parser("tests").add_argument("folder", type=Path)
         options = parser.parse_args(arguments)
@@ -126,7 +126,8 @@ class Part:
                     plan = hedon.RunPlan(
                         config, [pair + self.seed_shift], self.steps, out, threads=1, founders=founders
                     )
-                    hedon.run(plan)
+                    if hedon.run(plan).status == "interrupted":
+                        return
 
     def reduce(self, evolution: Path, runs: Path, folder: Path) -> None:
         """Reduces runs to `worlds.csv`.
@@ -137,7 +138,7 @@ class Part:
             folder: Folder of the table.
 
         Raises:
-            ValueError: A run has other founders.
+            ValueError: A run has other founders, or was interrupted.
         """
         living = pl.read_parquet(evolution / LIVING)
         rows = []
@@ -145,6 +146,8 @@ class Part:
             for path in sorted(runs.glob(f"{name}-[0-9]*")):
                 run = open_run(path)
                 for world in read_worlds([run]):
+                    if world.extinct_step is None and world.last_step < self.steps:
+                        raise ValueError(f"{path}: ends at step {world.last_step:,}; `hedon resume` continues it")
                     pair = world.seed - self.seed_shift
                     founders = treatment.founders(living, pair)
                     if world.config.world.founders != founders.digest:

@@ -40,6 +40,8 @@ def test_worlds_of_evolved_genomes_are_run_and_reduced(
     assert set(worlds["steps"]) == {64}
     short.main("", ["tests", str(tmp_path)])
     assert "primary: " in capsys.readouterr().out
+    with pytest.raises(ValueError, match="ends at step 64; `hedon resume` continues it"):
+        replace(part, steps=128).main("", ["worlds", str(evolved), str(tmp_path / "runs"), str(tmp_path)])
     other = pl.read_parquet(evolved / evolution.LIVING).with_columns(w_normal=pl.lit(0.0, pl.Float32))
     other.write_parquet(evolved.parent / evolution.LIVING)
     (evolved.parent / evolution.WORLDS).write_bytes((evolved / evolution.WORLDS).read_bytes())
