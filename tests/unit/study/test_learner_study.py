@@ -28,9 +28,24 @@ NAME = "same-genes-another-learner"
 RESULTS = Path(__file__).parents[3] / "docs" / "results"
 
 
-def committed(name: str) -> ResultTable:
-    results = landscape_results(read_arms(RESULTS / "learner"), complete=True)
+def committed(part: str) -> ResultTable:
+    """The table of the tests of a part, from the committed worlds."""
+    if part == "landscape":
+        results = landscape_results(read_arms(RESULTS / "learner"), complete=True)
+    else:
+        worlds = pl.read_csv(RESULTS / "learner" / "evolution" / evolution.WORLDS)
+        results = evolution_results(worlds, complete=True)
+    name = f"learner_{part}_verdict"
     return next(result for result in results if isinstance(result, ResultTable) and result.name == name)
+
+
+def answers_of_page(heading: str) -> list[tuple[str, str]]:
+    """The first and the last cell of each row of the table of tests below a heading, with the answer as a word."""
+    text = (RESULTS / "learner.md").read_text(encoding="utf-8").replace("*", "")
+    table = text[text.index(heading) :]
+    lines = table[table.index("| test") :].split("\n\n")[0].splitlines()[2:]
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    return [(first, NONE if last == "\N{EN DASH}" else re.split(r"[:,]", last)[0]) for first, *_, last in cells]
 
 
 def test_its_worlds_are_the_committed_ones() -> None:
@@ -48,32 +63,25 @@ def test_its_worlds_are_the_committed_ones() -> None:
 
 def test_each_expectation_is_of_a_test() -> None:
     assert set(LANDSCAPE) == set(named_tests(read_arms(RESULTS / "learner"))["test"]) - {"hump, short"}
-    worlds = pl.read_csv(RESULTS / "learner" / "evolution" / evolution.WORLDS)
-    tests = next(
-        result.rows
-        for result in evolution_results(worlds, complete=False)
-        if isinstance(result, ResultTable) and result.name == "learner_evolution_verdict"
-    )
-    assert list(EVOLUTION) == tests["test"].to_list()
-    assert set(tests["answer"]) == {OPEN}, "not all worlds have run"
+    assert list(EVOLUTION) == committed("evolution").rows["test"].to_list()
 
 
 def test_the_answers_from_the_committed_founders_are_those_of_the_page() -> None:
-    """Each row of the page: the test, what was expected, the effect, p, and whether it came out."""
-    table = committed("learner_landscape_verdict")
+    table = committed("landscape")
     assert table.note.endswith("The landscapes repeat the pilots.")
     names = {"short horizon": "short", "long horizon": "long", "normalized advantages": "normalized"}
-    text = (RESULTS / "learner.md").read_text(encoding="utf-8").replace("*", "")
-    part = text[text.index("| test | expected |") : text.index("Hump is the mean")]
     answers = {}
-    for line in part.splitlines()[2:]:
-        if line.startswith("|"):
-            name, _, _, _, came = (cell.strip() for cell in line.strip("|").split("|"))
-            for long, short in names.items():
-                name = name.replace(long, short)
-            answers[name] = NONE if came == "\N{EN DASH}" else re.split(r"[:,]", came)[0]
+    for name, came in answers_of_page("## The tests fixed beforehand"):
+        for long, short in names.items():
+            name = name.replace(long, short)
+        answers[name] = came
     assert answers == dict(table.rows.select("test", "answer").iter_rows())
     assert list(answers.values()).count(YES) == 8
+
+
+def test_the_answers_from_the_committed_evolution_are_those_of_the_page() -> None:
+    came = [answer for _, answer in answers_of_page("## Evolution under a slow and a fast learner")]
+    assert came == committed("evolution").rows["answer"].to_list() == [YES] * 7
 
 
 def row(effect: float, p: float, p_holm: float | None = None) -> dict:

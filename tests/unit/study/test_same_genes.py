@@ -10,6 +10,7 @@ import pytest
 
 import hedon
 from hedon.config import digest, load_config
+from hedon.statistic import mean_interval
 from hedon_studies.same_genes_another_learner import evolution
 from hedon_studies.same_genes_another_learner.landscape import (
     ACTION,
@@ -27,6 +28,7 @@ from hedon_studies.same_genes_another_learner.landscape import (
 
 ROOT = Path(__file__).parents[3]
 RESULTS = ROOT / "docs" / "results"
+EVOLVED = RESULTS / "learner" / "evolution"
 
 
 def founders(seed: int, sight: float, food: float, bend: float = 0.0, worlds: int = 30) -> pl.DataFrame:
@@ -179,12 +181,52 @@ def test_the_committed_worlds_are_those_of_the_design():
     assert command
     settings = re.findall(r"--set (\S+?)`?(?=\s|`|$)", command[0])
     assert len(settings) == 6
-    worlds = pl.read_csv(RESULTS / "learner" / "evolution" / evolution.WORLDS)
-    assert worlds.select("arm", "seed").is_unique().all()
-    assert worlds["seed"].is_between(1101, 1160).all()
+    worlds = pl.read_csv(EVOLVED / evolution.WORLDS)
+    designed = {(arm, seed) for arm in evolution.ARMS for seed in range(1101, 1161)}
+    assert sorted(worlds.select("arm", "seed").iter_rows()) == sorted(designed)
     for arm, rate in evolution.ARMS.items():
         config = load_config("appetite", overrides=[*settings, f"learning.learning_rate={rate}"])
         assert set(worlds.filter(pl.col("arm") == arm)["config_digest"]) == {digest(config)}
-    page = " ".join((RESULTS / "learner.md").read_text().split())
-    fast, slow = (worlds.filter(pl.col("arm") == arm).height for arm in ("fast", "slow"))
-    assert f"{fast} worlds of the fast arm and {slow} of the slow one" in page
+
+
+def test_the_committed_genes_are_those_of_the_committed_worlds():
+    living = pl.read_parquet(EVOLVED / evolution.LIVING)
+    for arm, rate in evolution.ARMS.items():
+        of_arm = living.filter((pl.col("learning_rate") / rate - 1).abs() < 1e-6)
+        means = of_arm.group_by("seed").agg(pl.col(SIGHT, FOOD, ACTION).mean()).sort("seed")
+        worlds = pl.read_csv(EVOLVED / evolution.WORLDS).filter(pl.col("arm") == arm).sort("seed")
+        assert means["seed"].to_list() == worlds["seed"].to_list()
+        for gene in (SIGHT, FOOD, ACTION):
+            assert means[gene].to_numpy() == pytest.approx(worlds[gene].to_numpy(), abs=1e-4)
+
+
+def test_the_page_has_the_numbers_of_the_committed_evolution():
+    text = (RESULTS / "learner.md").read_text().replace("\N{MINUS SIGN}", "-")
+    page = " ".join(text[text.index("## Evolution under") :].split())
+    worlds = pl.read_csv(EVOLVED / evolution.WORLDS)
+    assert worlds["extinct_step"].null_count() == worlds.height
+    paired = evolution.pairs(worlds)
+    angles = {arm: evolution.direction(paired, arm) for arm in ("slow", "fast")}
+    assert f"in {(angles['fast'] > angles['slow']).sum()} of 60 pairs of worlds" in page
+    rows = {"direction [degrees]": (1, angles)}
+    columns = {"weight of sight": (2, SIGHT), "weight of food": (2, FOOD), "weight of action": (2, ACTION)}
+    columns |= {"generation at the end": (1, "generation"), "agents alive": (0, "alive_all_steps")}
+    for label, (digits, column) in columns.items():
+        rows[label] = (digits, {arm: worlds.filter(pl.col("arm") == arm)[column].to_numpy() for arm in angles})
+    for label, (digits, values) in rows.items():
+        cells = []
+        for arm in angles:
+            bounds = mean_interval(values[arm].tolist())
+            mean, low, high = (f"{value:.{digits}f}" for value in (bounds.mean, bounds.low, bounds.high))
+            cells.append(f"{mean} ({low} … {high})")
+        assert f"| {label} | {cells[0]} | {cells[1]} |" in page
+    for digits, test in zip((1, *[2] * 6), evolution.named_tests(worlds).iter_rows(named=True), strict=True):
+        effect, low, high = (f"{test[name]:.{digits}f}" for name in ("effect", "low", "high"))
+        assert f"+{effect} ({low} … {high})" in page
+    control = evolution.neutral_control(worlds)
+    outside = control.filter((pl.col("low") > 0) | (pl.col("high") < 0)).height
+    assert f"excludes 0 for {outside} of {control.height} genes" in page
+    for arm, slope in (("slow", "-0.1° per generation in the slow arm"), ("fast", "0.8° in the fast arm")):
+        reached = worlds.filter(pl.col("arm") == arm).sort("seed")["generation"]
+        assert f"{np.polyfit(reached, angles[arm], 1)[0]:.1f}" == slope.split("°")[0]
+        assert slope in page
