@@ -26,6 +26,7 @@ from hedon_studies.same_genes_another_learner.landscape import ACTION, ARMS, FOO
 from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
 
 LEARNERS = ("slow", "baseline", "fast")
+ROWS = "rows.parquet"
 STEPS, EVERY, EARLY, LATE = 20_480, 1_024, 6_144, 8_192
 NEAR = 0.5
 """Reading of a ray that sees food in half of its reach."""
@@ -159,19 +160,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
     run.add_argument("learner", choices=LEARNERS)
     run.add_argument("first", type=int, help="seed of the first world")
     run.add_argument("last", type=int, help="seed of the last world")
-    run.add_argument("file", type=Path, help="table to write (CSV)")
+    run.add_argument("file", type=Path, help="table to write (Parquet)")
     run.add_argument("--steps", type=int, default=STEPS)
     verbs.add_parser("tests", help="print the tests").add_argument("file", nargs="+", type=Path)
     options = parser.parse_args(arguments)
     if options.verb == "run":
+        options.file.parent.mkdir(parents=True, exist_ok=True)
         seeds = range(options.first, options.last + 1)
-        pl.DataFrame([row for seed in seeds for row in world_rows(options.learner, seed, options.steps)]).write_csv(
-            options.file
-        )
+        rows = pl.DataFrame([row for seed in seeds for row in world_rows(options.learner, seed, options.steps)])
+        rows.cast({pl.Float64: pl.Float32}).write_parquet(options.file, compression="zstd", compression_level=19)
     else:
         require_files(parser, options.file)
         with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=60, tbl_width_chars=160):
-            print(named_tests(pl.concat(map(pl.read_csv, options.file))))
+            print(named_tests(pl.concat(map(pl.read_parquet, options.file))))
 
 
 if __name__ == "__main__":

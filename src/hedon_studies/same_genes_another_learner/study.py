@@ -2,9 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import polars as pl
 
 import hedon.assay
@@ -13,10 +11,10 @@ from hedon.analysis import ResultTable, WorldRecord, make_table
 from hedon.config import Config
 from hedon.figure import NamedFigure
 from hedon.record import Founders
-from hedon.statistic import mean_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
 from hedon_studies.same_genes_another_learner import evolution, landscape
 from hedon_studies.same_genes_another_learner.answer import EVOLUTION, LANDSCAPE, answer_table
+from hedon_studies.same_genes_another_learner.drawing import draw_ends, draw_slopes
 from hedon_studies.same_genes_another_learner.evolution import EVOLVING, PRESET, SEEN
 from hedon_studies.same_genes_another_learner.landscape import ACTION, FOOD, SIGHT
 
@@ -90,7 +88,7 @@ def landscape_results(
     slopes = {arm: landscape.slopes(founders, "food") for arm, founders in arms.items()}
     yield NamedFigure(
         *_LANDSCAPE,
-        _draw_slopes(slopes),
+        draw_slopes(slopes),
         "Slopes of relative food intake on the weights of food and of its sight: means over worlds, from five on with "
         "95 % intervals. Above the dashed line, liking the sight of food adds more than liking food itself.",
     )
@@ -117,24 +115,6 @@ def _humps(founders: pl.DataFrame, seeds: Sequence[int]) -> list[float | None]:
     return [humps.get(seed) for seed in seeds]
 
 
-def _draw_slopes(slopes: Mapping[str, pl.DataFrame]) -> Any:
-    with hedon.figure.styled():
-        figure = hedon.figure.new_figure(5.6, 4.4)
-        axes = figure.subplots()
-        for arm, worlds in slopes.items():
-            bounds = [mean_interval(worlds[gene].to_list()) for gene in (FOOD, SIGHT)]
-            x, y = (np.array([each.low, each.mean, each.high], np.float64) for each in bounds)  # None becomes NaN
-            axes.plot(x, np.full(3, y[1]), color=hedon.figure.BLUE)
-            axes.plot(np.full(3, x[1]), y, color=hedon.figure.BLUE)
-            axes.plot(x[1], y[1], "o", color=hedon.figure.BLUE, markersize=5)
-            axes.annotate(arm, (x[1], y[1]), xytext=(6, 5), textcoords="offset points")
-        axes.axline((0, 0), slope=1, color=hedon.figure.MUTED, linestyle="--", linewidth=0.8)
-        axes.margins(0.15)
-        axes.set_xlabel("slope on the weight of food")
-        axes.set_ylabel("slope on the weight of its sight")
-    return figure
-
-
 def make_evolution(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """Makes the figure and the tables of the weights that evolve under the slow and the fast learner."""
     rows = [
@@ -158,8 +138,11 @@ def evolution_results(worlds: pl.DataFrame, note: str = "", *, complete: bool) -
         note: Remark below the table of tests.
         complete: Whether all worlds have run.
     """
-    caption = "A world each: mean weights among the living at the end. On a line through 0, rewards have one direction."
-    yield NamedFigure(*_EVOLUTION, _draw_ends(worlds), caption)
+    caption = (
+        "A dot for each world: mean weights among the living at the end. On a line through 0, rewards have one "
+        "direction; the colored lines show the mean directions."
+    )
+    yield NamedFigure(*_EVOLUTION, draw_ends(worlds), caption)
     yield answer_table("learner_evolution_verdict", evolution.named_tests(worlds), EVOLUTION, note, complete=complete)
     control = evolution.neutral_control(worlds).iter_rows(named=True)
     title = "Negative control: the primary test with each neutral gene in place of sight"
@@ -168,20 +151,6 @@ def evolution_results(worlds: pl.DataFrame, note: str = "", *, complete: bool) -
     scores = [f"{gene}{end}" for gene in (SIGHT, FOOD, ACTION) for end in ("", "_score")]
     ends = worlds.select(*shown, *scores).iter_rows(named=True)
     yield make_table("learner_evolution_world", "Each world: its agents, and the living at its end", ends, shown=False)
-
-
-def _draw_ends(worlds: pl.DataFrame) -> Any:
-    with hedon.figure.styled():
-        figure = hedon.figure.new_figure(5.6, 4.4)
-        axes = figure.subplots()
-        for arm, color in zip(evolution.ARMS, (hedon.figure.BLUE, hedon.figure.ORANGE), strict=True):
-            ends = worlds.filter(pl.col("arm") == arm)
-            axes.plot(ends[FOOD], ends[SIGHT], "o", color=color, markersize=4, label=arm)
-        axes.axline((0, 0), slope=1, color=hedon.figure.MUTED, linestyle="--", linewidth=0.8)
-        axes.set_xlabel("weight of food")
-        axes.set_ylabel("weight of its sight")
-        axes.legend(loc="best")
-    return figure
 
 
 STUDY = Study(

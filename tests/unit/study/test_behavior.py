@@ -87,11 +87,11 @@ def test_a_steeper_slope_on_sight_alone_is_found_and_one_on_both_is_not() -> Non
 
 def test_worlds_are_simulated_and_tested(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for learner in ("baseline", "fast"):
-        words = ["run", learner, "1", "2", str(tmp_path / f"{learner}.csv"), "--steps", "1024"]
+        words = ["run", learner, "1", "2", str(tmp_path / f"{learner}.parquet"), "--steps", "1024"]
         behavior.main(words)
-    rows = pl.read_csv(tmp_path / "fast.csv")
+    rows = pl.read_parquet(tmp_path / "fast.parquet")
     assert rows.select("seed", "step", "measure").rows() == [
         (seed, 1024, measure) for seed in (1, 2) for measure in ("intake", "steering", "approach", "value")
     ]
-    behavior.main(["tests", str(tmp_path / "baseline.csv"), str(tmp_path / "fast.csv")])
+    behavior.main(["tests", str(tmp_path / "baseline.parquet"), str(tmp_path / "fast.parquet")])
     assert "primary: early intake" in capsys.readouterr().out

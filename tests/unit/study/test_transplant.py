@@ -55,7 +55,7 @@ def test_a_missing_table_is_named(words: list[str], capsys: pytest.CaptureFixtur
         swap.PART.main("", words)
     assert ended.value.code == 2
     assert re.search(r"error: no.(living\.parquet|worlds\.csv): there is no such file", capsys.readouterr().err)
-    for main, arguments in ((evolution.main, ["tests", "no"]), (behavior.main, ["tests", "no.csv"])):
+    for main, arguments in ((evolution.main, ["tests", "no"]), (behavior.main, ["tests", "no.parquet"])):
         with pytest.raises(SystemExit):
             main(arguments)
         assert "there is no such file" in capsys.readouterr().err
