@@ -14,7 +14,7 @@ from lazy_loader import load
 from numpy.typing import ArrayLike
 
 from hedon.analysis import ResultTable, make_table
-from hedon.statistic import FOR_VERDICT, LEVEL, holm, mean_interval, share_interval
+from hedon.statistic import FOR_VERDICT, holm, mean_interval, share_interval
 
 stats: Any = load("scipy.stats", suppress_warning=True)
 
@@ -55,24 +55,6 @@ class Test:
             return f"not known from {self.worlds} {'world' if self.worlds == 1 else 'worlds'}"
         bounds = "" if np.isnan(self.low) else f" ({self.low:.3g} to {self.high:.3g})"
         return f"{self.effect:.3g}{bounds}"
-
-
-def slope_test(name: str, x: ArrayLike, y: ArrayLike, extinct: int, *, above: bool) -> Test:
-    """Tests the slope of y over x, by least squares with Student's interval.
-
-    Args:
-        name: Name of the claim.
-        x: A number for each world, shape (worlds,).
-        y: A number for each world, shape (worlds,).
-        extinct: Number of worlds that died out.
-        above: Whether the claim holds above 0.
-    """
-    x_values, values = np.asarray(x, np.float64), np.asarray(y, np.float64)
-    if len(x_values) < 3 or np.ptp(x_values) == 0:
-        return Test(name, len(x_values), len(x_values), extinct, above)
-    slope, _, _, p, error = np.asarray(stats.linregress(x_values, values)).tolist()
-    half_width = float(stats.t.ppf((1 + LEVEL) / 2, len(x_values) - 2)) * error
-    return Test(name, len(x_values), len(x_values), extinct, above, slope, slope - half_width, slope + half_width, p)
 
 
 def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above: bool) -> Test:

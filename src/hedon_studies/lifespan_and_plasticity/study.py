@@ -1,128 +1,222 @@
-"""Do short lives and changing worlds make agents learn faster? README.md has the claim, the rule and the deviations."""
+"""Do shorter lives favor faster learning? README.md has the claim, the rule and the deviations."""
 
-import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import polars as pl
+from numpy.typing import NDArray
 
+import hedon.assay
 import hedon.figure
-from hedon.analysis import ResultTable, WorldRecord, last_mean, make_table, mean_lifetime
+from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive
+from hedon.config import Config
 from hedon.figure import NamedFigure
+from hedon.record import Founders, make_founders
+from hedon.statistic import mean_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
-from hedon_studies.rule import Test, mean_test, slope_test, verdict_table
+from hedon_studies.rule import Test, mean_test, verdict_table
 
 FOLDER = Path(__file__).parent
-SETTINGS = tomllib.loads((FOLDER / "study.toml").read_text(encoding="utf-8"))
-CONSTANT, CHANGING = SETTINGS["worlds"]
-GENE, NEUTRAL = "g_learning_rate", "neutral_1"
-SCALE = Scale(tuple(range(1, SETTINGS["seeds"] + 1)), SETTINGS["steps"])
+NAME = "lifespan-and-plasticity"
+GENE = "g_learning_rate"
+RANGE = (-1.0, 1.5)
+"""Bounds of the founders' genes, except the two weights."""
+WEIGHTS = {"w_normal": 1.0, "w_action": 0.0}
+"""The weights of all founders."""
+HAZARDS = (0.5, 1.0, 2.0, 4.0)
+"""Factors by which the hazard is multiplied."""
+BINS = np.linspace(*RANGE, 6)
+"""Edges of the ranges of the gene for which mean numbers of children are listed."""
+SCALE = Scale(tuple(range(1501, 1531)), 32_768)
 
 
-def _condition(world: str, hazard: float) -> Condition:
-    longer = f"hazard.schedule.scale.points=[[0, {hazard}]]"
-    changes = (*SETTINGS["overrides"], *SETTINGS["worlds"][world], longer)
-    return Condition(f"{world}, {hazard:g} times the hazard", "relocation", changes)
+def spread_rates(config: Config) -> Founders:
+    """Founders whose learning rates and neutral genes are spread independently and evenly, and whose weights are equal.
+
+    Args:
+        config: Settings of the worlds.
+    """
+    spread = hedon.assay.spread_founders(config, hedon.assay.Spread(*RANGE), next(iter(config.species)))
+    genomes = np.array(spread.values)
+    for gene, value in WEIGHTS.items():
+        genomes[:, spread.genes.index(gene)] = value
+    return make_founders(spread.genes, genomes, list(spread.group))
 
 
 CONDITIONS = {
-    (world, hazard): _condition(world, hazard) for world in SETTINGS["worlds"] for hazard in SETTINGS["hazards"]
+    hazard: Condition(
+        f"{hazard:g} times the hazard",
+        "appetite",
+        (
+            "genome.learning.learning_rate.initial_mean=0",
+            "genome.mutation_scale=0",
+            f"hazard.schedule.scale.points=[[0, {hazard}]]",
+        ),
+        founders=spread_rates,
+    )
+    for hazard in HAZARDS
 }
 
 
+def slope(genes: NDArray[np.floating[Any]], children: NDArray[np.floating[Any]]) -> float | None:
+    """The slope of relative fitness on a gene, by least squares; None without children.
+
+    Args:
+        genes: Gene of each founder, shape (founders,).
+        children: Number of its children, shape (founders,).
+    """
+    mean = children.mean()
+    return float(np.polyfit(genes, children / mean, 1)[0]) if mean > 0 else None
+
+
 def measure(world: WorldRecord) -> dict[str, Any]:
-    """The evolved learning rate, a neutral gene, and how long agents lived [step]; None if no agent died."""
+    """The measures of one world.
+
+    Returns:
+        "lifespan": mean number of steps that the founders lived. "unfinished": share of founders alive at the end.
+        "alive": mean number of agents alive. "slope": slope of the founders' relative number of children on the gene.
+        "children": their mean relative number of children in each range of `BINS`. A slope for each neutral gene.
+    """
+    founders = hedon.assay.founder_outcomes(world.agents, world.weight_names, world.last_step)
+    children = founders["offspring"].to_numpy().astype(np.float64)
+    genes = founders[GENE].to_numpy()
+    bins = np.digitize(genes, BINS[1:-1])
+    relative = children / children.mean() if children.mean() > 0 else np.full_like(children, np.nan)
     return {
         "seed": world.seed,
         "died out": world.extinct_step is not None,
-        "rate": last_mean(GENE, world),
-        "neutral": last_mean(NEUTRAL, world),
-        "lifetime": mean_lifetime(world.agents, born_in_run=True),
+        "lifespan": float(founders["lifespan"].cast(pl.Float64).mean()),  # type: ignore[arg-type]
+        "unfinished": float((founders["lifespan"] >= world.last_step).mean()),  # type: ignore[arg-type]
+        "alive": mean_alive(world.population),
+        "slope": slope(genes, children),
+        "children": [float(relative[bins == i].mean()) for i in range(len(BINS) - 1)],
+        **{name: slope(founders[name].to_numpy(), children) for name in world.neutral_names},
     }
 
 
-def named_tests(rows: Sequence[dict[str, Any]]) -> tuple[Test, Test]:
-    """The tests of both claims, from the rows of all worlds."""
-    measured = [row for row in rows if row["rate"] is not None and row["lifetime"]]
-    constant = [row for row in measured if row["world"] == CONSTANT]
-    slope = slope_test(
-        "shorter lives, larger rates: slope of log10 rate over log10 lifetime",
-        [np.log10(row["lifetime"]) for row in constant],
-        [row["rate"] for row in constant],
-        sum(row["died out"] for row in constant),
-        above=False,
-    )
-    rates = {(row["world"], row["hazard"], row["seed"]): row for row in rows if row["rate"] is not None}
-    pairs = [
-        (row, rates[CHANGING, hazard, seed])
-        for (world, hazard, seed), row in rates.items()
-        if world == CONSTANT and (CHANGING, hazard, seed) in rates
-    ]
-    difference = mean_test(
-        "constant worlds, less learning: log10 rate, changing less constant",
-        [after["rate"] - before["rate"] for before, after in pairs],
-        len(pairs),
-        sum(row["died out"] for pair in pairs for row in pair),
-        above=True,
-    )
-    return slope, difference
+def trends(rows: Sequence[Mapping[str, Any]], key: str = "slope") -> list[float]:
+    """How a slope changes per doubling of the hazard, for each seed with a value at each hazard.
+
+    Args:
+        rows: Rows of worlds, each with "hazard", "seed" and the slope.
+        key: Column of the slope.
+
+    Returns:
+        For each seed, the least-squares slope on the binary logarithm of the hazard.
+    """
+    by_seed: dict[int, dict[float, float]] = {}
+    for row in rows:
+        if row[key] is not None:
+            by_seed.setdefault(row["seed"], {})[row["hazard"]] = row[key]
+    doublings = np.log2(HAZARDS)
+    complete = (found for found in by_seed.values() if found.keys() >= set(HAZARDS))
+    return [float(np.polyfit(doublings, [found[hazard] for hazard in HAZARDS], 1)[0]) for found in complete]
+
+
+def named_test(rows: Sequence[Mapping[str, Any]]) -> Test:
+    """The test of the claim, from the rows of all worlds."""
+    values = trends(rows)
+    extinct = sum(row["died out"] for row in rows)
+    name = "shorter lives, larger rates: change of the slope on the gene per doubling of the hazard"
+    return mean_test(name, values, len({row["seed"] for row in rows}), extinct, above=True)
+
+
+def control_rows(rows: Sequence[Mapping[str, Any]], neutral: Sequence[str]) -> list[dict[str, Any]]:
+    """Negative control: the same test with each neutral gene in place of the learning rate.
+
+    Args:
+        rows: Rows of worlds.
+        neutral: Names of the neutral genes.
+    """
+    tests = {gene: mean_test(gene, trends(rows, gene), 0, 0, above=True) for gene in neutral}
+    return [{"gene": gene, "effect": t.effect, "low": t.low, "high": t.high, "p": t.p} for gene, t in tests.items()]
+
+
+def hazard_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """A row for each hazard: how long founders live, and what their gene is worth, as means over worlds."""
+    found = []
+    for hazard in HAZARDS:
+        worlds = [row for row in rows if row["hazard"] == hazard]
+        if worlds:
+            bounds = mean_interval([row["slope"] for row in worlds if row["slope"] is not None])
+            means = {key: float(np.mean([row[key] for row in worlds])) for key in ("lifespan", "unfinished", "alive")}
+            children = np.nanmean([row["children"] for row in worlds], axis=0)
+            labels = [f"{low:g} to {high:g}" for low, high in pairwise(BINS)]
+            found.append(
+                {"hazard": hazard, "worlds": len(worlds), **means}
+                | {"slope": bounds.mean, "low": bounds.low, "high": bounds.high}
+                | dict(zip(labels, children.tolist(), strict=True))
+            )
+    return found
 
 
 def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
-    """Makes the figure, and the tables of answers and of worlds."""
-    question = "Do short lives and changing worlds make agents learn faster?"
-    rows = [
-        {"world": world, "hazard": hazard} | measure(record)
-        for (world, hazard), condition in CONDITIONS.items()
-        for record in inputs.worlds.get(condition.label, ())
+    """Makes the figure, and the tables of the answer, of hazards, of neutral genes and of worlds."""
+    question = "Do shorter lives favor faster learning?"
+    records = [
+        (hazard, world) for hazard, condition in CONDITIONS.items() for world in inputs.worlds.get(condition.label, ())
     ]
-    if not rows:
+    if not records:
         note = missing(CONDITIONS.values(), inputs)
-        yield NamedFigure("lifespan-and-plasticity", question, hedon.figure.draw_message("no worlds yet"), note)
+        yield NamedFigure(NAME, question, hedon.figure.draw_message("no worlds yet"), note)
         return
-    tests = named_tests(rows)
-    note = missing_note(inputs, tuple(CONDITIONS.values()), SCALE)
-    yield draw_rates(question, rows, tests[0])
-    yield verdict_table("lifespan_verdict", tests, note)
-    yield make_table("lifespan_world", "Each world: log10 of the rate over its setting", rows, shown=False)
+    rows = [{"hazard": hazard} | measure(world) for hazard, world in records]
+    yield from results(question, rows, missing_note(inputs, tuple(CONDITIONS.values()), SCALE))
 
 
-def draw_rates(question: str, rows: Sequence[dict[str, Any]], slope: Test) -> NamedFigure:
-    """Draws the evolved rate of learning over the lifetime of agents, a point per world that has both numbers."""
-    rows = [row for row in rows if row["lifetime"] and row["rate"] is not None]
+def results(question: str, rows: Sequence[Mapping[str, Any]], note: str = "") -> Iterator[NamedFigure | ResultTable]:
+    """The figure and the tables.
+
+    Args:
+        question: Title of the figure.
+        rows: Rows of worlds.
+        note: Remark below the table of the answer.
+    """
+    yield draw_slopes(question, rows)
+    yield verdict_table("lifespan_verdict", (named_test(rows),), note)
+    yield make_table("lifespan_hazard", "Each hazard: relative number of children, by the gene", hazard_rows(rows))
+    neutral = [name for name in rows[0] if name.startswith("neutral_")]
+    title = "Negative control: the same test with each neutral gene"
+    yield make_table("lifespan_control", title, control_rows(rows, neutral), shown=False)
+    plain = [{key: value for key, value in row.items() if key != "children"} for row in rows]
+    yield make_table("lifespan_world", "Each world: its founders, and slopes on their genes", plain, shown=False)
+
+
+def draw_slopes(question: str, rows: Sequence[Mapping[str, Any]]) -> NamedFigure:
+    """Draws the slope on the gene over the lifespan of founders: a dot for each world, and means with intervals."""
     with hedon.figure.styled():
         figure = hedon.figure.new_figure(5.6, 3.6)
         axes = figure.subplots()
-        for world, color in ((CONSTANT, hedon.figure.BLUE), (CHANGING, hedon.figure.ORANGE)):
-            for row in rows:
-                if row["world"] == world:
-                    marker = "x" if row["died out"] else "o"
-                    axes.plot(row["lifetime"], row["rate"], marker, color=color, markersize=4)
-            axes.plot([], [], "o", color=color, label=world)
-        axes.axhline(0.0, linewidth=0.8)
-        if rows:  # an empty axis has no logarithm
+        hedon.figure.draw_zero_line(axes)
+        measured = [row for row in rows if row["slope"] is not None]
+        for row in measured:
+            marker = "x" if row["died out"] else "o"
+            axes.plot(row["lifespan"], row["slope"], marker, color=hedon.figure.PALE, markersize=3)
+        for row in hazard_rows(measured):
+            bounds = np.array([row["low"], row["high"]], np.float64)  # None becomes NaN
+            axes.plot([row["lifespan"]] * 2, bounds, color=hedon.figure.BLUE, linewidth=2)
+            axes.plot(row["lifespan"], row["slope"], "o", color=hedon.figure.BLUE, markersize=6)
+        if measured:  # an empty axis has no logarithm
             axes.set_xscale("log")
-        axes.set_xlabel("mean lifetime [step]")
-        axes.set_ylabel("evolved learning rate, log10 of its factor")
-        axes.legend(loc="best")
-    caption = (
-        "A world each; a cross: died out. 0: the setting. Slope over constant worlds, per decade of lifetime: "
-        f"{slope.said}."
-    )
-    return NamedFigure("lifespan-and-plasticity", question, figure, caption)
+        axes.set_xlabel("mean lifespan of founders [step]")
+        axes.set_ylabel("slope of relative children on the gene")
+    caption = "A dot for each world, a cross if it died out; means over worlds, from five on with 95 % intervals."
+    return NamedFigure(NAME, question, figure, caption)
 
 
 STUDY = Study(
-    "lifespan-and-plasticity",
+    NAME,
     "Lifespan and plasticity",
-    "Kozielska & Weissing (2024), 10.1371/journal.pcbi.1011840: shorter lives select for larger learning rates, "
-    "constant worlds for less learning. Is it so where agents are born, learn and die in one world?",
+    "Kozielska & Weissing (2024), 10.1371/journal.pcbi.1011840: shorter lives select for larger learning rates. Is it "
+    "so where agents are born, learn and die in one world?",
     (
         Item(
-            "lifespan-and-plasticity",
-            "Evolved rates of learning, by lifespan",
-            "Shorter lives: larger rates. Constant worlds: less learning.",
+            NAME,
+            "Fitness of the learning rate, by lifespan",
+            "A shorter lifespan leads to larger learning rates.",
             make,
             tuple(CONDITIONS.values()),
             SCALE,

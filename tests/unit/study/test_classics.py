@@ -11,9 +11,9 @@ from hedon.assay import Lines
 from hedon.compare.source import read_table
 from hedon.figure.style import svg_bytes
 from hedon.statistic import FOR_VERDICT as WORLDS
-from hedon_studies.lifespan_and_plasticity.study import CHANGING, CONSTANT, draw_rates, named_tests
+from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, draw_slopes, named_test, slope
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
-from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, slope_test, verdict_table
+from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, verdict_table
 
 
 def answers(*tests) -> list[str]:
@@ -26,17 +26,13 @@ def test_a_clear_effect_is_yes_on_one_side_and_no_on_the_other() -> None:
     both = [mean_test("a", values, WORLDS, 0, above=above) for above in (True, False)]
     assert answers(*both) == [YES, NO]
     assert both[0].low < 1.0 < both[0].high
-    x = np.linspace(0, 1, WORLDS)
-    slopes = [slope_test("a", x, -2.0 * x + rng.normal(0, 0.3, WORLDS), 0, above=above) for above in (False, True)]
-    assert answers(*slopes) == [YES, NO]
-    assert slopes[0].low < -2.0 < slopes[0].high < 0
 
 
 def test_few_worlds_and_chance_leave_the_answer_open() -> None:
     rng = np.random.default_rng(2)
     few = mean_test("few", rng.normal(5.0, 1.0, WORLDS - 1), WORLDS - 1, 0, above=True)
     none = mean_test("none", rng.normal(0.0, 1.0, 100), 100, 0, above=True)
-    empty = slope_test("empty", [], [], 0, above=True)
+    empty = mean_test("empty", [], 0, 0, above=True)
     assert few.p < 1e-6
     assert answers(few, none, empty) == [OPEN, OPEN, OPEN]
 
@@ -47,57 +43,58 @@ def test_three_values_from_thirty_worlds_leave_the_answer_open() -> None:
     assert answers(few) == [OPEN]
 
 
-def test_an_effect_that_two_worlds_cannot_show_is_reported_in_words() -> None:
-    assert slope_test("few", [1.0, 2.0], [0.1, 0.2], 0, above=True).said == "not known from 2 worlds"
-    assert slope_test("one", [1.0], [0.1], 0, above=True).said == "not known from 1 world"
-    known = slope_test("known", [1.0, 2.0, 3.0], [0.1, 0.2, 0.3], 0, above=True)
-    assert known.said.startswith("0.1 (0.1 to 0.1")
+def test_an_effect_is_reported_in_words() -> None:
+    assert mean_test("few", [], 2, 0, above=True).said == "not known from 2 worlds"
+    assert mean_test("one", [0.1], 1, 0, above=True).said == "not known from 1 world"
+    known = mean_test("known", [0.1, 0.2, 0.3, 0.4, 0.5], 5, 0, above=True)
+    assert known.said.startswith("0.3 (0.1")
 
 
 def test_tests_of_a_study_are_corrected_for_each_other() -> None:
-    x = np.arange(WORLDS, dtype=float)
-    weak = next(
-        found
-        for seed in range(1000)
-        if 0.03
-        < (found := slope_test("weak", x, x + np.random.default_rng(seed).normal(0, 25, 30), 0, above=True)).p
-        < 0.05
-    )
+    worlds = (np.random.default_rng(seed).normal(0.35, 1.0, WORLDS) for seed in range(1000))
+    tests = (mean_test("weak", values, WORLDS, 0, above=True) for values in worlds)
+    weak = next(test for test in tests if 0.03 < test.p < 0.05)
     none = mean_test("none", np.tile([1.0, -1.0], WORLDS), 2 * WORLDS, 0, above=True)
     assert answers(weak) == [YES]
     assert answers(weak, none) == [OPEN, OPEN]
 
 
-def rows(slope: float, difference: float) -> list[dict]:
-    """Worlds whose genes follow the lifetime as given; one in six died out."""
+def rows(trend: float, seeds: int = WORLDS) -> list[dict]:
+    """Worlds in which the slope on the gene changes by `trend` per doubling of the hazard; one seed in six died out."""
     rng = np.random.default_rng(3)
-    found = []
-    for world, more in ((CONSTANT, 0.0), (CHANGING, difference)):
-        for hazard in (0.25, 0.5, 1.0, 2.0, 4.0):
-            for seed in range(1, 7):
-                lifetime = 5e4 / hazard * rng.uniform(0.9, 1.1)
-                rate = slope * np.log10(lifetime) + more + rng.normal(0, 0.02)
-                known = {"rate": rate, "lifetime": lifetime, "died out": seed == 1}
-                found.append({"world": world, "hazard": hazard, "seed": seed} | known)
-    return found
+    return [
+        {"hazard": hazard, "seed": seed, "died out": seed % 6 == 0, "lifespan": 6000 / hazard, "unfinished": 0.0}
+        | {"alive": 300 / hazard, "slope": 0.1 + trend * np.log2(hazard) + rng.normal(0, 0.05)}
+        | {"children": [1.0] * 5, "neutral_1": rng.normal(0, 0.05)}
+        for hazard in HAZARDS
+        for seed in range(seeds)
+    ]
 
 
-def test_lifespan_and_plasticity_recovers_known_effects() -> None:
-    slope, difference = named_tests(rows(-0.2, 0.1))
-    assert slope.low < -0.2 < slope.high
-    assert difference.low < 0.1 < difference.high
-    assert (slope.worlds, slope.extinct) == (30, 5)
-    assert (difference.worlds, difference.extinct) == (30, 10)
-    assert answers(slope, difference) == [YES, YES]
-    assert answers(*named_tests(rows(0.2, -0.1))) == [NO, NO]
-    lost = [row | ({"lifetime": None, "rate": None} if row["hazard"] == 4.0 else {}) for row in rows(-0.2, 0.1)]
-    assert answers(*named_tests(lost)) == [OPEN, OPEN], "24 worlds are left"
+def test_lifespan_and_plasticity_recovers_a_known_effect() -> None:
+    found = named_test(rows(0.05))
+    assert found.low < 0.05 < found.high
+    assert (found.worlds, found.values, found.extinct) == (WORLDS, WORLDS, 20)
+    assert answers(found) == [YES]
+    assert answers(named_test(rows(-0.05))) == [NO]
+    assert answers(named_test(rows(0.0))) == [OPEN]
+    childless = [row | ({"slope": None} if row["hazard"] == 4.0 and row["seed"] == 7 else {}) for row in rows(0.05)]
+    assert named_test(childless).values == WORLDS - 1
+    assert answers(named_test(childless)) == [OPEN], "too few seeds are left"
+    (control,) = control_rows(rows(0.05), ["neutral_1"])
+    assert control["low"] < 0 < control["high"]
 
 
-def test_worlds_whose_agents_have_not_died_give_a_figure_without_points() -> None:
-    young = [row | {"lifetime": None} for row in rows(-0.2, 0.1)]
-    figure = draw_rates("How fast do they learn?", young, named_tests(young)[0]).figure
-    assert svg_bytes(figure)
+def test_the_slope_of_relative_fitness_on_a_gene_is_found() -> None:
+    genes = np.linspace(-1, 1.5, 20_000)
+    children = np.random.default_rng(4).poisson(2.0 * (1 + 0.3 * genes))
+    assert slope(genes, children) == pytest.approx(0.3 / (1 + 0.3 * genes.mean()), abs=0.03)
+    assert slope(genes, np.zeros(20_000)) is None
+
+
+def test_worlds_without_children_give_a_figure_without_points() -> None:
+    childless = [row | {"slope": None} for row in rows(0.05, seeds=2)]
+    assert svg_bytes(draw_slopes("Do shorter lives favor faster learning?", childless).figure)
 
 
 def test_more_tests_make_the_rule_stricter() -> None:
@@ -150,11 +147,11 @@ def run_quick(folder: Path, name: str) -> dict[str, list[dict]]:
     return tables
 
 
-@pytest.mark.long
+@pytest.mark.more
 def test_lifespan_and_plasticity_runs_from_its_settings_to_its_page(tmp_path: Path) -> None:
-    worlds = run_quick(tmp_path, "lifespan-and-plasticity")["lifespan_world"]
-    assert len(worlds) == 10
-    assert all(abs(row["rate"]) < 0.2 for row in worlds)
+    tables = run_quick(tmp_path, "lifespan-and-plasticity")
+    assert [row["hazard"] for row in tables["lifespan_world"]] == list(HAZARDS)
+    assert len(tables["lifespan_control"]) == 16
 
 
 def test_mating_strategies_runs_from_its_settings_to_its_page(tmp_path: Path) -> None:
