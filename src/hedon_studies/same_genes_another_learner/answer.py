@@ -1,4 +1,4 @@
-"""Compares the tests of both parts with what expected.md expects of them, number by number.
+"""Compares the tests of all parts with what expected.md expects of them, number by number.
 
 An expectation gives the range in which the mean lies, and whether the test shows a difference from 0: whether its p is
 below `CHANCE`, after Holm correction for all secondary tests of the part. Until all worlds that were fixed beforehand
@@ -67,6 +67,42 @@ EVOLUTION: Mapping[str, Expected] = {
     f"{FOOD}, fast, against drift [sd]": Expected(low=0),
 }
 """Expected in part B, by test."""
+SWAP: Mapping[str, Expected] = {
+    "primary: share of the fast-evolved, fast less slow learner": Expected(0.03, 0.2),
+    "share of the fast-evolved less 1/2, fast learner": Expected(low=0),
+    "share of the fast-evolved less 1/2, slow learner": Expected(high=0),
+}
+"""Expected in part C, by test."""
+DECOY: Mapping[str, Expected] = {
+    "primary: loss of intake, fast less slow learner": Expected(-0.15, -0.04),
+    "loss of intake, fast-evolved less slow-evolved, slow learner": Expected(0.02, 0.12),
+    "loss of intake, fast-evolved less slow-evolved, fast learner": Expected(shown=False),
+    "the same difference, fast less slow learner": Expected(high=0),
+    "loss of intake, slow-evolved, slow learner": Expected(low=0),
+    "loss of intake, slow-evolved, fast learner": Expected(-0.02, 0.04, shown=None),
+    "loss of intake, fast-evolved, slow learner": Expected(low=0),
+    "loss of intake, fast-evolved, fast learner": Expected(-0.02, 0.04, shown=None),
+}
+"""Expected in part D, by test."""
+BEHAVIOR: Mapping[str, Expected] = {
+    "primary: early intake, sight less food": Expected(low=0),
+    "early intake, sight": Expected(low=0),
+    "early intake, food": Expected(-0.0002, 0.0002, shown=None),
+    "late intake, food": Expected(high=0),
+    "early steering, sight": Expected(low=0),
+    "early steering, food": Expected(low=0),
+}
+"""Expected of the mechanism, by test; nothing is expected of late intake by sight. `early_values` has the others."""
+
+
+def early_values(baseline: Mapping[str, float]) -> dict[str, Expected]:
+    """What is expected of the early value of seen food: slopes change by less than a fifth of the baseline's.
+
+    Args:
+        baseline: Mean slope of the baseline, by test.
+    """
+    bounds = {test: abs(slope) / 5 for test, slope in baseline.items()}
+    return {test: Expected(-bound, bound, shown=None) for test, bound in bounds.items()}
 
 
 def answer(test: Mapping[str, Any], expected: Expected | None, effects: Mapping[str, float], *, complete: bool) -> str:

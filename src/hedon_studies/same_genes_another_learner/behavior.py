@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 import hedon
 from hedon.assay import Spread, spread_founders
 from hedon.config import Config, load_config
+from hedon_studies.same_genes_another_learner.answer import BEHAVIOR, answer_table, early_values
 from hedon_studies.same_genes_another_learner.evolution import PRESET, SEEN, require_files
 from hedon_studies.same_genes_another_learner.landscape import ACTION, ARMS, FOOD, SIGHT
 from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
@@ -33,6 +34,10 @@ NEAR = 0.5
 IMMORTAL = ("genome.mutation_scale=0", "hazard.kappa=0", "hazard.alpha_age=0", "birth.kappa=0")
 CHANGES = (("early", "intake"), ("late", "intake"), ("early", "steering"), ("early", "value"))
 """Windows and measures of the secondary tests."""
+WINDOWS = {"early": pl.col("step") <= EARLY, "late": pl.col("step") > pl.col("step").max() - LATE}
+GENES = {"sight": SIGHT, "food": FOOD}
+WORLDS = 30
+"""Number of worlds of each learner."""
 
 Floats = NDArray[np.floating[Any]]
 
@@ -134,10 +139,9 @@ def named_tests(rows: pl.DataFrame) -> pl.DataFrame:
     Returns:
         One row per test, with the columns of `named_test`, and "p_holm", which is null for the primary test.
     """
-    windows = {"early": pl.col("step") <= EARLY, "late": pl.col("step") > pl.col("step").max() - LATE}
 
     def change(window: str, measure: str, gene: str) -> NDArray[np.float64]:
-        steps = rows.filter(windows[window]).filter(pl.col("measure") == measure)
+        steps = rows.filter(WINDOWS[window]).filter(pl.col("measure") == measure)
         means = steps.group_by("learner", "seed").agg(pl.col(gene).mean())
         paired = means.pivot(on="learner", index="seed", values=gene).sort("seed")
         return (paired["fast"] - paired["baseline"]).to_numpy()
@@ -147,9 +151,21 @@ def named_tests(rows: pl.DataFrame) -> pl.DataFrame:
     tests += [
         named_test(f"{window} {measure}, {name}", change(window, measure, gene))
         for window, measure in CHANGES
-        for name, gene in (("sight", SIGHT), ("food", FOOD))
+        for name, gene in GENES.items()
     ]
     return holm_table(tests)
+
+
+def answers(rows: pl.DataFrame) -> pl.DataFrame:
+    """The tests, and whether each came out as expected; open until all worlds have run.
+
+    Args:
+        rows: Rows from `world_rows` of all worlds.
+    """
+    baseline = rows.filter((pl.col("learner") == "baseline") & (pl.col("measure") == "value") & WINDOWS["early"])
+    values = {f"early value, {name}": float(np.mean(baseline[gene].to_numpy())) for name, gene in GENES.items()}
+    complete = rows.select("learner", "seed").unique().height == WORLDS * len(LEARNERS)
+    return answer_table("tests", named_tests(rows), {**BEHAVIOR, **early_values(values)}, complete=complete).rows
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -172,7 +188,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     else:
         require_files(parser, options.file)
         with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=60, tbl_width_chars=160):
-            print(named_tests(pl.concat(map(pl.read_parquet, options.file))))
+            print(answers(pl.concat(map(pl.read_parquet, options.file))))
 
 
 if __name__ == "__main__":

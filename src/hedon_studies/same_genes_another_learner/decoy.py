@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from hedon.analysis import WorldRecord, food_per_agent_step, mean_alive
 from hedon.record import Founders
+from hedon_studies.same_genes_another_learner.answer import DECOY
 from hedon_studies.same_genes_another_learner.evolution import ARMS
 from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
 from hedon_studies.same_genes_another_learner.transplant import Part, Treatment
 
-DECOY = (
+SETTINGS = (
     "food.decoy.looks_like=normal",
     "food.decoy.gives.energy=0",
     "food.decoy.needs.energy=1e6",  # more than an agent can hold, so decoys stay
@@ -88,7 +89,7 @@ def _name(genes: str, learner: str, decoys: str) -> str:
 PART = Part(
     {
         _name(genes, learner, decoys): Treatment(
-            learner, (genes,), (*DECOY, f"food.decoy.initial_count={count}", f"food.decoy.capacity={count}")
+            learner, (genes,), (*SETTINGS, f"food.decoy.initial_count={count}", f"food.decoy.capacity={count}")
         )
         for genes in ARMS
         for learner in ARMS
@@ -99,6 +100,7 @@ PART = Part(
     seed_shift=200,
     measure=measure,
     named_tests=named_tests,
+    expected=DECOY,
 )
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import polars as pl
 from hedon.analysis import WorldRecord
 from hedon.assay import by_descent, world_lines
 from hedon.record import Founders
+from hedon_studies.same_genes_another_learner.answer import SWAP
 from hedon_studies.same_genes_another_learner.evolution import ARMS
 from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
 from hedon_studies.same_genes_another_learner.transplant import Part, Treatment
@@ -57,6 +58,7 @@ PART = Part(
     seed_shift=100,
     measure=measure,
     named_tests=named_tests,
+    expected=SWAP,
 )
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ import hedon
 from hedon.analysis import WorldRecord, read_worlds
 from hedon.config import Config, load_config
 from hedon.record import Founders, make_founders, open_run
+from hedon_studies.same_genes_another_learner.answer import Expected, answer_table
 from hedon_studies.same_genes_another_learner.evolution import (
     ARMS,
     EVOLVING,
@@ -75,6 +76,7 @@ class Part:
         seed_shift: Seed of a world minus the seed of its pair in part B.
         measure: The measures of a world, given its record and its founders.
         named_tests: The tests of all worlds, the rows of `worlds.csv`.
+        expected: What is expected of each test.
     """
 
     treatments: Mapping[str, Treatment]
@@ -83,6 +85,7 @@ class Part:
     seed_shift: int
     measure: Callable[[WorldRecord, Founders], Mapping[str, Any]]
     named_tests: Callable[[pl.DataFrame], pl.DataFrame]
+    expected: Mapping[str, Expected]
 
     def main(self, description: str, arguments: Sequence[str] | None = None) -> None:
         """The program of the part; see the top of this file."""
@@ -105,8 +108,17 @@ class Part:
         elif options.verb == "worlds":
             self.reduce(options.evolution, options.runs, options.folder)
         else:
-            with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=60, tbl_width_chars=160):
-                print(self.named_tests(pl.read_csv(options.folder / WORLDS)))
+            with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=60, tbl_width_chars=200):
+                print(self.answers(pl.read_csv(options.folder / WORLDS)))
+
+    def answers(self, worlds: pl.DataFrame) -> pl.DataFrame:
+        """The tests, and whether each came out as expected; open until all worlds have run.
+
+        Args:
+            worlds: Rows of `worlds.csv`.
+        """
+        complete = worlds.height == self.pairs * len(self.treatments)
+        return answer_table("tests", self.named_tests(worlds), self.expected, complete=complete).rows
 
     def run(self, evolution: Path, runs: Path, names: Sequence[str]) -> None:
         """Simulates the worlds of some treatments, pair by pair on one thread, except those whose folder exists.

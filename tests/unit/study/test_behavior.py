@@ -8,7 +8,9 @@ import ppo_reference
 import pytest
 
 import hedon
+from hedon_studies.rule import NO, OPEN, YES
 from hedon_studies.same_genes_another_learner import behavior
+from hedon_studies.same_genes_another_learner.answer import NONE
 from hedon_studies.same_genes_another_learner.landscape import FOOD, SIGHT
 
 
@@ -83,6 +85,18 @@ def test_a_steeper_slope_on_sight_alone_is_found_and_one_on_both_is_not() -> Non
     assert turned["late intake, sight"]["low"] < 0 < turned["late intake, sight"]["high"]
     larger = behavior.named_tests(answers(0.05, 0.05)).row(0, named=True)
     assert larger["low"] < 0 < larger["high"]
+
+
+def test_answers_follow_from_the_expectation() -> None:
+    rows = answers(0.05, 0.0)
+    slow = rows.filter(pl.col("learner") == "baseline").with_columns(learner=pl.lit("slow"))
+    found = behavior.answers(pl.concat([rows, slow]))
+    came = dict(found.select("test", "answer").iter_rows())
+    assert came["primary: early intake, sight less food"] == YES
+    assert came["late intake, sight"] == NONE
+    assert came["early value, sight"] == NO, "it changes by half of the baseline's slope"
+    assert came["early value, food"] == YES
+    assert set(behavior.answers(rows)["answer"]) == {OPEN, NONE}, "the slow learner has not run"
 
 
 def test_worlds_are_simulated_and_tested(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

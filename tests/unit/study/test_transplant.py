@@ -9,6 +9,7 @@ import polars as pl
 import pytest
 
 import hedon
+from hedon_studies.rule import NO, OPEN, YES
 from hedon_studies.same_genes_another_learner import behavior, decoy, evolution, swap
 from hedon_studies.same_genes_another_learner.study import LEARNERS
 from hedon_studies.same_genes_another_learner.transplant import Part
@@ -39,7 +40,9 @@ def test_worlds_of_evolved_genomes_are_run_and_reduced(
     assert set(worlds["pair"]) == {PAIR}
     assert set(worlds["steps"]) == {64}
     short.main("", ["tests", str(tmp_path)])
-    assert "primary: " in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "primary: " in printed
+    assert OPEN in printed
     with pytest.raises(ValueError, match="ends at step 64; `hedon resume` continues it"):
         replace(part, steps=128).main("", ["worlds", str(evolved), str(tmp_path / "runs"), str(tmp_path)])
     other = pl.read_parquet(evolved / evolution.LIVING).with_columns(w_normal=pl.lit(0.0, pl.Float32))
@@ -93,8 +96,15 @@ def test_winning_at_home_is_told_from_winning_everywhere() -> None:
     assert home["primary: share of the fast-evolved, fast less slow learner"]["low"] > 0
     assert home["share of the fast-evolved less 1/2, fast learner"]["low"] > 0
     assert home["share of the fast-evolved less 1/2, slow learner"]["high"] < 0
+    assert list(home) == list(swap.PART.expected)
     everywhere = swap.named_tests(contests(0.7, 0.7)).row(0, named=True)
     assert everywhere["low"] < 0 < everywhere["high"]
+
+
+def test_an_answer_needs_all_contests() -> None:
+    assert set(swap.PART.answers(contests(0.57, 0.43))["answer"]) == {YES}
+    assert swap.PART.answers(contests(0.43, 0.57))["answer"].to_list() == [NO] * 3
+    assert set(swap.PART.answers(contests(0.57, 0.43, pairs=59))["answer"]) == {OPEN}
 
 
 def decoyed(loss: dict[tuple[str, str], float], pairs: int = 30) -> pl.DataFrame:
@@ -115,7 +125,7 @@ def test_a_loss_by_learners_is_told_from_a_loss_by_genes() -> None:
     assert learner["effect"] == pytest.approx(0.2, abs=0.02)
     assert learner["low"] > 0
     assert all(each["low"] < 0 < each["high"] for each in genes)
-    assert tests["test"].len() == 8
+    assert tests["test"].to_list() == list(decoy.PART.expected)
 
 
 def test_genes_that_mislead_only_one_learner_are_found() -> None:
