@@ -81,7 +81,9 @@ def test_the_start_is_recorded_where_the_table_says(run):
         assert run["started"] in record
 
 
-@pytest.mark.parametrize("path", ["learner/runs.csv", "learner/evolution/worlds.csv", "full-six/worlds.csv"])
+@pytest.mark.parametrize(
+    "path", ["learner/runs.csv", "learner/evolution/worlds.csv", "learner/swap/worlds.csv", "full-six/worlds.csv"]
+)
 def test_the_start_is_that_of_the_first_world(path):
     first = table(path)["started"].min()
     assert [run["started"] for run in RUNS if run["started_in"] == f"docs/results/{path}"] == [first]

@@ -12,7 +12,7 @@ from command import hedon
 from hedon.analysis import ResultTable
 from hedon.config import digest
 from hedon_studies.rule import NO, OPEN, YES
-from hedon_studies.same_genes_another_learner import evolution
+from hedon_studies.same_genes_another_learner import evolution, swap
 from hedon_studies.same_genes_another_learner.answer import EVOLUTION, LANDSCAPE, NONE, Expected, answer
 from hedon_studies.same_genes_another_learner.landscape import named_tests, read_arms
 from hedon_studies.same_genes_another_learner.study import (
@@ -39,13 +39,17 @@ def committed(part: str) -> ResultTable:
     return next(result for result in results if isinstance(result, ResultTable) and result.name == name)
 
 
-def answers_of_page(heading: str) -> list[tuple[str, str]]:
-    """The first and the last cell of each row of the table of tests below a heading, with the answer as a word."""
+def rows_of_page(heading: str) -> list[list[str]]:
+    """The cells of the table of tests below a heading."""
     text = (RESULTS / "learner.md").read_text(encoding="utf-8").replace("*", "")
     table = text[text.index(heading) :]
     lines = table[table.index("| test") :].split("\n\n")[0].splitlines()[2:]
-    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
-    return [(first, NONE if last == "\N{EN DASH}" else re.split(r"[:,]", last)[0]) for first, *_, last in cells]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+
+
+def answer_in(cell: str) -> str:
+    """The answer in the last cell of a row, as a word."""
+    return NONE if cell == "\N{EN DASH}" else re.split(r"[:,]", cell)[0]
 
 
 def test_its_worlds_are_the_committed_ones() -> None:
@@ -71,17 +75,39 @@ def test_the_answers_from_the_committed_founders_are_those_of_the_page() -> None
     assert table.note.endswith("The landscapes repeat the pilots.")
     names = {"short horizon": "short", "long horizon": "long", "normalized advantages": "normalized"}
     answers = {}
-    for name, came in answers_of_page("## The tests fixed beforehand"):
+    for name, *_, came in rows_of_page("## The tests fixed beforehand"):
         for long, short in names.items():
             name = name.replace(long, short)
-        answers[name] = came
+        answers[name] = answer_in(came)
     assert answers == dict(table.rows.select("test", "answer").iter_rows())
     assert list(answers.values()).count(YES) == 8
 
 
 def test_the_answers_from_the_committed_evolution_are_those_of_the_page() -> None:
-    came = [answer for _, answer in answers_of_page("## Evolution under a slow and a fast learner")]
+    came = [answer_in(cells[-1]) for cells in rows_of_page("## Evolution under a slow and a fast learner")]
     assert came == committed("evolution").rows["answer"].to_list() == [YES] * 7
+
+
+def committed_tests(part: str) -> tuple[pl.DataFrame, int]:
+    """The tests of a part with their answers, from its committed worlds, and the decimals that its page shows."""
+    return swap.PART.answers(pl.read_csv(RESULTS / "learner" / part / evolution.WORLDS)), 3
+
+
+def p_text(test: dict) -> str:
+    p = test["p"] if test["p_holm"] is None else test["p_holm"]
+    rounded = "< 0.0001" if p < 0.0001 else f"{p:.1g}" if p < 0.01 else f"{p:.2f}"
+    return f"{rounded} (one test)" if test["p_holm"] is None else rounded
+
+
+@pytest.mark.parametrize(("part", "heading"), [("swap", "## The swap")])
+def test_the_page_has_the_tests_of_each_part(part: str, heading: str) -> None:
+    tests, digits = committed_tests(part)
+    expected = []
+    for test in tests.iter_rows(named=True):
+        effect, low, high = (f"{test[name]:.{digits}f}" for name in ("effect", "low", "high"))
+        shown = f"{effect} ({low} … {high})" if effect.startswith("-") else f"+{effect} ({low} … {high})"
+        expected.append((shown.replace("-", "\N{MINUS SIGN}"), p_text(test), test["answer"]))
+    assert [(cells[2], cells[3], answer_in(cells[4])) for cells in rows_of_page(heading)] == expected
 
 
 def row(effect: float, p: float, p_holm: float | None = None) -> dict:
