@@ -82,7 +82,14 @@ def test_the_start_is_recorded_where_the_table_says(run):
 
 
 @pytest.mark.parametrize(
-    "path", ["learner/runs.csv", "learner/evolution/worlds.csv", "learner/swap/worlds.csv", "full-six/worlds.csv"]
+    "path",
+    [
+        "learner/runs.csv",
+        "learner/evolution/worlds.csv",
+        "learner/swap/worlds.csv",
+        "learner/behavior/runs.csv",
+        "full-six/worlds.csv",
+    ],
 )
 def test_the_start_is_that_of_the_first_world(path):
     first = table(path)["started"].min()

@@ -38,9 +38,9 @@ class Expected:
         if self.shown is False:
             return "no difference shown"
         if math.isinf(self.low) or math.isinf(self.high):
-            text = f"below {self.high:g}" if math.isinf(self.low) else f"above {self.low:g}"
+            text = f"below {self.high:.3g}" if math.isinf(self.low) else f"above {self.low:.3g}"
         else:
-            text = f"{self.low:g} to {self.high:g}"
+            text = f"{self.low:.3g} to {self.high:.3g}"
         return f"{text}, less than {self.below!r}" if self.below else text
 
 

@@ -5,6 +5,7 @@ import math
 import re
 from pathlib import Path
 
+import numpy as np
 import polars as pl
 import pytest
 from command import hedon
@@ -12,7 +13,7 @@ from command import hedon
 from hedon.analysis import ResultTable
 from hedon.config import digest
 from hedon_studies.rule import NO, OPEN, YES
-from hedon_studies.same_genes_another_learner import evolution, swap
+from hedon_studies.same_genes_another_learner import behavior, evolution, swap
 from hedon_studies.same_genes_another_learner.answer import EVOLUTION, LANDSCAPE, NONE, Expected, answer
 from hedon_studies.same_genes_another_learner.landscape import named_tests, read_arms
 from hedon_studies.same_genes_another_learner.study import (
@@ -88,9 +89,12 @@ def test_the_answers_from_the_committed_evolution_are_those_of_the_page() -> Non
     assert came == committed("evolution").rows["answer"].to_list() == [YES] * 7
 
 
-def committed_tests(part: str) -> tuple[pl.DataFrame, int]:
-    """The tests of a part with their answers, from its committed worlds, and the decimals that its page shows."""
-    return swap.PART.answers(pl.read_csv(RESULTS / "learner" / part / evolution.WORLDS)), 3
+def committed_tests(part: str) -> pl.DataFrame:
+    """The tests of a part with their answers, from its committed worlds."""
+    folder = RESULTS / "learner" / part
+    if part == "behavior":
+        return behavior.answers(pl.read_parquet(folder / behavior.ROWS))
+    return swap.PART.answers(pl.read_csv(folder / evolution.WORLDS))
 
 
 def p_text(test: dict) -> str:
@@ -99,15 +103,32 @@ def p_text(test: dict) -> str:
     return f"{rounded} (one test)" if test["p_holm"] is None else rounded
 
 
-@pytest.mark.parametrize(("part", "heading"), [("swap", "## The swap")])
+@pytest.mark.parametrize(("part", "heading"), [("swap", "## The swap"), ("behavior", "## Why the direction changes")])
 def test_the_page_has_the_tests_of_each_part(part: str, heading: str) -> None:
-    tests, digits = committed_tests(part)
     expected = []
-    for test in tests.iter_rows(named=True):
-        effect, low, high = (f"{test[name]:.{digits}f}" for name in ("effect", "low", "high"))
+    for test in committed_tests(part).iter_rows(named=True):
+        scale, digits = (
+            (1000, 2) if "intake" in test["test"] and part == "behavior" else (1, 3)
+        )  # foods per 1,000 steps
+        effect, low, high = (f"{scale * test[name]:.{digits}f}" for name in ("effect", "low", "high"))
         shown = f"{effect} ({low} … {high})" if effect.startswith("-") else f"+{effect} ({low} … {high})"
         expected.append((shown.replace("-", "\N{MINUS SIGN}"), p_text(test), test["answer"]))
     assert [(cells[2], cells[3], answer_in(cells[4])) for cells in rows_of_page(heading)] == expected
+
+
+def test_the_page_compares_the_early_slopes_of_two_learners() -> None:
+    early = pl.read_parquet(RESULTS / "learner" / "behavior" / behavior.ROWS).filter(behavior.WINDOWS["early"])
+    means = early.group_by("measure", "learner").agg(pl.col(behavior.GENES.values()).mean())
+    slope = {(measure, learner): genes for measure, learner, *genes in means.iter_rows()}
+    ratios = {name: np.divide(slope[name, "fast"], slope[name, "baseline"]) for name in ("value", "steering")}
+    page = " ".join((RESULTS / "learner.md").read_text(encoding="utf-8").split())
+    sight, food = 100 * abs(ratios["value"] - 1)
+    assert f"the slopes of value differ by {sight:.0f} and {food:.0f} % from the baseline's" in page
+    sight, food = ratios["steering"]
+    assert f"{sight:.1f} (sight) and {food:.1f} (food) times as large as the baseline's" in page
+    sight, food = slope["steering", "baseline"]
+    assert sight / food == pytest.approx(3, abs=0.2)
+    assert "the baseline's slope on sight is three times its slope on food" in page
 
 
 def row(effect: float, p: float, p_holm: float | None = None) -> dict:
