@@ -131,6 +131,20 @@ def test_the_page_compares_the_early_slopes_of_two_learners() -> None:
     assert "the baseline's slope on sight is three times its slope on food" in page
 
 
+def test_the_paper_has_the_effects_of_each_part() -> None:
+    paper = " ".join((RESULTS.parent / "paper" / "paper.md").read_text(encoding="utf-8").split())
+    direction, *_ = committed("evolution").rows.iter_rows(named=True)
+    assert f"points {direction['effect']:.1f}° ({direction['low']:.1f} … {direction['high']:.1f}) further" in paper
+    share, fast, slow = committed_tests("swap").iter_rows(named=True)
+    assert f"is {share['effect']:.3f} ({share['low']:.3f} … {share['high']:.3f}, 60 pairs)" in paper
+    for test in (fast, slow):
+        assert " ".join(f"{0.5 + test[key]:.3f}" for key in ("effect", "low", "high")) in re.sub(r"[(…] ?", "", paper)
+    tests = {test["test"]: test for test in committed_tests("behavior").iter_rows(named=True)}
+    for name in ("early intake, sight", "early intake, food", "late intake, food"):
+        size, *bounds = (1000 * abs(tests[name][key]) for key in ("effect", "low", "high"))
+        assert f"{size:.2f} ({min(bounds):.2f} … {max(bounds):.2f})" in paper
+
+
 def row(effect: float, p: float, p_holm: float | None = None) -> dict:
     return {"test": "a", "effect": effect, "p": p, "p_holm": p_holm, "worlds": 30}
 
