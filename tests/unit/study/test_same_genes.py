@@ -17,6 +17,7 @@ from hedon_studies.same_genes_another_learner.landscape import (
     ARMS,
     FOOD,
     SIGHT,
+    direction_change,
     hump,
     named_tests,
     neutral_control,
@@ -25,6 +26,7 @@ from hedon_studies.same_genes_another_learner.landscape import (
     slopes,
     write_arms,
 )
+from hedon_studies.same_genes_another_learner.named_test import named_test
 
 ROOT = Path(__file__).parents[3]
 RESULTS = ROOT / "docs" / "results"
@@ -99,6 +101,12 @@ def test_the_page_has_the_numbers_of_the_committed_founders():
         digits = 2 if row["test"].startswith("hump") else 3
         effect, low, high = (f"{row[name]:.{digits}f}" for name in ("effect", "low", "high"))
         assert f"{effect} ({low} … {high})".replace("-", "\N{MINUS SIGN}") in page
+    second = named_test("living descendants", direction_change(arms["baseline"], arms["fast"], "descendants"))
+    effect, low, high = (f"{second[name]:.2f}" for name in ("effect", "low", "high"))
+    assert f"instead of intake, also fixed beforehand, agrees: +{effect} ({low} … {high})" in page
+    means = {arm: slopes(founders, "food").select(pl.col(SIGHT, FOOD).mean()).row(0) for arm, founders in arms.items()}
+    ratios = [f"{means[arm][0] / means[arm][1]:.2f}" for arm in ("slow", "baseline", "fast")]
+    assert f"rises from {ratios[0]} over {ratios[1]} to {ratios[2]}." in page
     outside = neutral_control(arms)
     assert f"excludes 0 in {outside['excluding_0'].sum()} of {outside['genes'].sum()} cases" in page
     for arm in arms.values():
@@ -210,7 +218,7 @@ def test_the_page_has_the_numbers_of_the_committed_evolution():
     assert f"in {(angles['fast'] > angles['slow']).sum()} of 60 pairs of worlds" in page
     rows = {"direction [degrees]": (1, angles)}
     columns = {"weight of sight": (2, SIGHT), "weight of food": (2, FOOD), "weight of action": (2, ACTION)}
-    columns |= {"generation at the end": (1, "generation"), "agents alive": (0, "alive_all_steps")}
+    columns |= {"generation at the end": (1, "generation"), "agents alive, mean over all steps": (0, "alive_all_steps")}
     for label, (digits, column) in columns.items():
         rows[label] = (digits, {arm: worlds.filter(pl.col("arm") == arm)[column].to_numpy() for arm in angles})
     for label, (digits, values) in rows.items():
