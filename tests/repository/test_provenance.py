@@ -87,6 +87,7 @@ def test_the_start_is_recorded_where_the_table_says(run):
         "learner/runs.csv",
         "learner/evolution/worlds.csv",
         "learner/swap/worlds.csv",
+        "learner/decoy/worlds.csv",
         "learner/behavior/runs.csv",
         "full-six/worlds.csv",
     ],

@@ -153,13 +153,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("folder", type=Path, help="docs/results/learner")
     folder = parser.parse_args(arguments).folder
+    tables = {"evolution": draw_ends, "swap": draw_shares, "decoy": draw_losses}
+    rows = folder / "behavior" / behavior.ROWS
+    founders = [folder / name for name in (landscape.FOUNDERS, landscape.OUTCOMES)]
+    evolution.require_files(parser, [*founders, *(folder / part / evolution.WORLDS for part in tables), rows])
     arms = landscape.read_arms(folder)
     slopes = {arm: landscape.slopes(founders, "food") for arm, founders in arms.items()}
     save_figure(draw_slopes(slopes), folder / "landscape.svg")
-    tables = {"evolution": draw_ends, "swap": draw_shares, "decoy": draw_losses}
     for part, draw in tables.items():
         save_figure(draw(pl.read_csv(folder / part / evolution.WORLDS)), folder / part / f"{part}.svg")
-    save_figure(draw_learning(pl.read_parquet(folder / "behavior" / behavior.ROWS)), folder / "behavior/behavior.svg")
+    save_figure(draw_learning(pl.read_parquet(rows)), rows.with_name("behavior.svg"))
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from command import hedon
 from hedon.analysis import ResultTable
 from hedon.config import digest
 from hedon_studies.rule import NO, OPEN, YES
-from hedon_studies.same_genes_another_learner import behavior, evolution, swap
+from hedon_studies.same_genes_another_learner import behavior, decoy, evolution, swap
 from hedon_studies.same_genes_another_learner.answer import EVOLUTION, LANDSCAPE, NONE, Expected, answer
 from hedon_studies.same_genes_another_learner.landscape import named_tests, read_arms
 from hedon_studies.same_genes_another_learner.study import (
@@ -94,7 +94,7 @@ def committed_tests(part: str) -> pl.DataFrame:
     folder = RESULTS / "learner" / part
     if part == "behavior":
         return behavior.answers(pl.read_parquet(folder / behavior.ROWS))
-    return swap.PART.answers(pl.read_csv(folder / evolution.WORLDS))
+    return {"swap": swap.PART, "decoy": decoy.PART}[part].answers(pl.read_csv(folder / evolution.WORLDS))
 
 
 def p_text(test: dict) -> str:
@@ -103,7 +103,10 @@ def p_text(test: dict) -> str:
     return f"{rounded} (one test)" if test["p_holm"] is None else rounded
 
 
-@pytest.mark.parametrize(("part", "heading"), [("swap", "## The swap"), ("behavior", "## Why the direction changes")])
+PAGE_PARTS = [("swap", "## The swap"), ("decoy", "## Decoys"), ("behavior", "## Why the direction changes")]
+
+
+@pytest.mark.parametrize(("part", "heading"), PAGE_PARTS)
 def test_the_page_has_the_tests_of_each_part(part: str, heading: str) -> None:
     expected = []
     for test in committed_tests(part).iter_rows(named=True):
@@ -139,6 +142,9 @@ def test_the_paper_has_the_effects_of_each_part() -> None:
     assert f"is {share['effect']:.3f} ({share['low']:.3f} … {share['high']:.3f}, 60 pairs)" in paper
     for test in (fast, slow):
         assert " ".join(f"{0.5 + test[key]:.3f}" for key in ("effect", "low", "high")) in re.sub(r"[(…] ?", "", paper)
+    losses = {test["test"]: test["effect"] for test in committed_tests("decoy").iter_rows(named=True)}
+    own, others = (100 * losses[f"loss of intake, {genes}-evolved, slow learner"] for genes in ("slow", "fast"))
+    assert f"{own:.0f} % of its intake with its own rewards and {others:.0f} % with the fast learner's" in paper
     tests = {test["test"]: test for test in committed_tests("behavior").iter_rows(named=True)}
     for name in ("early intake, sight", "early intake, food", "late intake, food"):
         size, *bounds = (1000 * abs(tests[name][key]) for key in ("effect", "low", "high"))
