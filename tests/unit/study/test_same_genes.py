@@ -106,7 +106,8 @@ def test_the_page_has_the_numbers_of_the_committed_founders():
     assert f"instead of intake, also fixed beforehand, agrees: +{effect} ({low} … {high})" in page
     means = {arm: slopes(founders, "food").select(pl.col(SIGHT, FOOD).mean()).row(0) for arm, founders in arms.items()}
     ratios = [f"{means[arm][0] / means[arm][1]:.2f}" for arm in ("slow", "baseline", "fast")]
-    assert f"rises from {ratios[0]} over {ratios[1]} to {ratios[2]}." in page
+    told = "{} times the slope on food with the slow learner, {} times with the baseline, and {} times with the fast"
+    assert told.format(*ratios) in page
     outside = neutral_control(arms)
     assert f"excludes 0 in {outside['excluding_0'].sum()} of {outside['genes'].sum()} cases" in page
     for arm in arms.values():
