@@ -13,7 +13,7 @@ from hedon.study.claim import Claim, Comparison, OverWorlds
 from hedon.study.estimate import compare, estimate
 from hedon.study.item import Condition
 from hedon.study.verdict import UNDECIDED, place
-from hedon_studies.rule import OPEN, count_test, mean_test, slope_test, verdict_table
+from hedon_studies.rule import OPEN, count_test, mean_test, verdict_table
 
 LEVEL = 0.05
 
@@ -62,8 +62,6 @@ def _answered(kind: str) -> Callable[[np.random.Generator], bool]:
         worlds = int(rng.integers(FOR_VERDICT, 61))
         if kind == "mean":
             test = mean_test("a", rng.standard_t(3, worlds), worlds, 0, above=True)
-        elif kind == "slope":
-            test = slope_test("a", rng.normal(size=worlds), rng.standard_t(3, worlds), 0, above=True)
         else:
             test = count_test("a", int(rng.binomial(worlds, 0.5)), worlds, 0, 0.5, above=True)
         return verdict_table("t", [test]).rows["answer"][0] != OPEN
@@ -133,6 +131,6 @@ CALIBRATIONS += [
             LEVEL,
             _answered(kind),
         )
-        for kind in ("mean", "slope", "count")
+        for kind in ("mean", "count")
     ),
 ]

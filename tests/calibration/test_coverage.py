@@ -19,7 +19,7 @@ PRINTED = [
     *(f"topic:{name}" for name in TOPICS),
     *(f"verdict:{name}" for name in get_args(OverWorlds)),
     *(f"verdict:order {name}" for name in get_args(Comparison)),
-    *(f"rule:{name}" for name in ("mean", "slope", "count")),
+    *(f"rule:{name}" for name in ("mean", "count")),
     *(f"tool:{name}" for name in ("compare", "factorial", "power")),
     *(f"assay:{command.callback.__name__}" for command in app.registered_commands if command.callback),
 ]

@@ -89,6 +89,7 @@ def test_the_start_is_recorded_where_the_table_says(run):
         "learner/swap/worlds.csv",
         "learner/decoy/worlds.csv",
         "learner/behavior/runs.csv",
+        "lifespan/runs.csv",
         "full-six/worlds.csv",
     ],
 )

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 import pytest
 from command import hedon
 
@@ -11,9 +12,12 @@ from hedon.assay import Lines
 from hedon.compare.source import read_table
 from hedon.figure.style import svg_bytes
 from hedon.statistic import FOR_VERDICT as WORLDS
+from hedon.statistic import mean_interval
 from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, draw_slopes, named_test, slope
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
 from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, verdict_table
+
+RESULTS = Path(__file__).parents[3] / "docs" / "results"
 
 
 def answers(*tests) -> list[str]:
@@ -95,6 +99,26 @@ def test_the_slope_of_relative_fitness_on_a_gene_is_found() -> None:
 def test_worlds_without_children_give_a_figure_without_points() -> None:
     childless = [row | {"slope": None} for row in rows(0.05, seeds=2)]
     assert svg_bytes(draw_slopes("Do shorter lives favor faster learning?", childless).figure)
+
+
+def test_the_page_on_lifespans_has_the_numbers_of_its_tables() -> None:
+    page = " ".join((RESULTS / "lifespan.md").read_text(encoding="utf-8").split())
+    worlds = pl.read_csv(RESULTS / "lifespan" / "worlds.csv")
+    assert (worlds.height, worlds["died out"].sum()) == (120, 5)
+    assert worlds.filter("died out")["hazard"].unique().to_list() == [4.0]
+    found = named_test(worlds.to_dicts())
+    assert answers(found) == [YES]
+    assert f"{found.effect:.3f} ({found.low:.3f} … {found.high:.3f}) on average over 30 seeds (p {found.p:.2f})" in page
+    control = control_rows(worlds.to_dicts(), [name for name in worlds.columns if name.startswith("neutral_")])
+    (outside,) = [row for row in control if row["low"] > 0 or row["high"] < 0]
+    assert f"shows a larger rise ({outside['effect']:.3f})" in page
+    for row in pl.read_csv(RESULTS / "lifespan" / "hazards.csv").iter_rows(named=True):
+        bounds = mean_interval(worlds.filter(pl.col("hazard") == row["hazard"])["slope"].to_list())
+        assert (row["slope"], row["low"], row["high"]) == pytest.approx((bounds.mean, bounds.low, bounds.high))
+        slope_text = f"{row['slope']:.3f} ({row['low']:.3f} … {row['high']:.3f})"
+        children = ", ".join(f"{value:.2f}" for value in list(row.values())[8:])
+        numbers = f"{row['lifespan']:,.0f} | {row['alive']:.0f} | {slope_text} | {children}"
+        assert f"| \N{MULTIPLICATION SIGN} {row['hazard']:g} | {numbers} |" in page
 
 
 def test_more_tests_make_the_rule_stricter() -> None:
