@@ -1,11 +1,12 @@
 """The report of a run can be read on a light and on a dark screen."""
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 from synthetic_run import write_run
 
 from hedon.record.reader import open_run
 from hedon.report.run import write_report
+
+axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe: uv sync --group browser")
 
 pytest_plugins = ("view_fixture",)
 
@@ -24,7 +25,7 @@ def test_the_report_follows_the_color_scheme_of_the_screen(ground, report, brows
     page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")
     channels = page.evaluate("getComputedStyle(document.body).backgroundColor.match(/\\d+/g).map(Number)")
     assert (sum(channels) < 150) == (ground == "dark")
-    found = Axe().run(page, options={"runOnly": ["color-contrast"]}).response["violations"]
+    found = axe.Axe().run(page, options={"runOnly": ["color-contrast"]}).response["violations"]
     assert [node["target"] for each in found for node in each["nodes"]] == []
     # Figures have dark text, so they keep their white background.
     assert (

@@ -3,9 +3,10 @@
 from itertools import product
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 from split_run import record_species
 from view_page import GROUNDS, SIZES, live_server, run_server, serving, sized
+
+axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe: uv sync --group browser")
 
 pytest_plugins = ("view_fixture",)
 PANELS = ("agent", "agents", "plots", "settings", "world-panel")
@@ -27,7 +28,7 @@ def rest(watched):
 
 
 def violations(watched):
-    found = Axe().run(watched.page).response["violations"]
+    found = axe.Axe().run(watched.page).response["violations"]
     return [(each["id"], [node["target"] for node in each["nodes"]][:3]) for each in found]
 
 

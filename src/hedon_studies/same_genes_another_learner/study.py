@@ -2,8 +2,10 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import polars as pl
+from lazy_loader import load
 
 import hedon.assay
 import hedon.figure
@@ -14,9 +16,10 @@ from hedon.record import Founders
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
 from hedon_studies.same_genes_another_learner import evolution, landscape
 from hedon_studies.same_genes_another_learner.answer import EVOLUTION, LANDSCAPE, answer_table
-from hedon_studies.same_genes_another_learner.drawing import draw_ends, draw_slopes
 from hedon_studies.same_genes_another_learner.evolution import EVOLVING, PRESET, SEEN
 from hedon_studies.same_genes_another_learner.landscape import ACTION, FOOD, SIGHT
+
+drawing: Any = load("hedon_studies.same_genes_another_learner.drawing")  # Matplotlib is slow to import
 
 FOLDER = Path(__file__).parent
 RANGE = (-2.0, 2.0)
@@ -88,7 +91,7 @@ def landscape_results(
     slopes = {arm: landscape.slopes(founders, "food") for arm, founders in arms.items()}
     yield NamedFigure(
         *_LANDSCAPE,
-        draw_slopes(slopes),
+        drawing.draw_slopes(slopes),
         "Slopes of relative food intake on the weights of food and of its sight: means over worlds, from five on with "
         "95 % intervals. Above the dashed line, liking the sight of food adds more than liking food itself.",
     )
@@ -142,7 +145,7 @@ def evolution_results(worlds: pl.DataFrame, note: str = "", *, complete: bool) -
         "A dot for each world: mean weights among the living at the end. On a line through 0, rewards have one "
         "direction; the colored lines show the mean directions."
     )
-    yield NamedFigure(*_EVOLUTION, draw_ends(worlds), caption)
+    yield NamedFigure(*_EVOLUTION, drawing.draw_ends(worlds), caption)
     yield answer_table("learner_evolution_verdict", evolution.named_tests(worlds), EVOLUTION, note, complete=complete)
     control = evolution.neutral_control(worlds).iter_rows(named=True)
     title = "Negative control: the primary test with each neutral gene in place of sight"
