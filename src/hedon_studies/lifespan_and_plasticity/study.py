@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import polars as pl
 from numpy.typing import NDArray
 
 import hedon.assay
@@ -82,14 +81,14 @@ def measure(world: WorldRecord) -> dict[str, Any]:
     """
     founders = hedon.assay.founder_outcomes(world.agents, world.weight_names, world.last_step)
     children = founders["offspring"].to_numpy().astype(np.float64)
-    genes = founders[GENE].to_numpy()
+    genes, lifespans = founders[GENE].to_numpy(), founders["lifespan"].to_numpy()
     bins = np.digitize(genes, BINS[1:-1])
     relative = children / children.mean() if children.mean() > 0 else np.full_like(children, np.nan)
     return {
         "seed": world.seed,
         "died out": world.extinct_step is not None,
-        "lifespan": float(founders["lifespan"].cast(pl.Float64).mean()),  # type: ignore[arg-type]
-        "unfinished": float((founders["lifespan"] >= world.last_step).mean()),  # type: ignore[arg-type]
+        "lifespan": float(lifespans.mean()),
+        "unfinished": float((lifespans >= world.last_step).mean()),
         "alive": mean_alive(world.population),
         "slope": slope(genes, children),
         "children": [float(relative[bins == i].mean()) for i in range(len(BINS) - 1)],

@@ -22,7 +22,7 @@ import hedon
 from hedon.assay import Spread, spread_founders
 from hedon.config import Config, load_config
 from hedon_studies.same_genes_another_learner.answer import BEHAVIOR, answer_table, early_values
-from hedon_studies.same_genes_another_learner.evolution import PRESET, SEEN, require_files
+from hedon_studies.same_genes_another_learner.evolution import PRESET, SEEN, require_files, require_groups
 from hedon_studies.same_genes_another_learner.landscape import ACTION, ARMS, FOOD, SIGHT
 from hedon_studies.same_genes_another_learner.named_test import holm_table, named_test
 
@@ -164,8 +164,22 @@ def answers(rows: pl.DataFrame) -> pl.DataFrame:
     """
     baseline = rows.filter((pl.col("learner") == "baseline") & (pl.col("measure") == "value") & WINDOWS["early"])
     values = {f"early value, {name}": float(np.mean(baseline[gene].to_numpy())) for name, gene in GENES.items()}
-    complete = rows.select("learner", "seed").unique().height == WORLDS * len(LEARNERS)
+    ends = rows.filter(pl.col("step") == STEPS)
+    complete = ends.select("learner", "seed").unique().height == WORLDS * len(LEARNERS)
     return answer_table("tests", named_tests(rows), {**BEHAVIOR, **early_values(values)}, complete=complete).rows
+
+
+def _read(parser: argparse.ArgumentParser, files: Sequence[Path]) -> pl.DataFrame:
+    """The rows of some tables; ends the program with a message if one cannot be read, or if a learner is missing."""
+    tables = []
+    for path in files:
+        try:
+            tables.append(pl.read_parquet(path))
+        except pl.exceptions.PolarsError:
+            parser.error(f"{path}: not a table that `run` wrote")
+    rows = pl.concat(tables)
+    require_groups(parser, rows["learner"], ("baseline", "fast"))
+    return rows
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -188,7 +202,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     else:
         require_files(parser, options.file)
         with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=60, tbl_width_chars=160):
-            print(answers(pl.concat(map(pl.read_parquet, options.file))))
+            print(answers(_read(parser, options.file)))
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from hedon_studies.same_genes_another_learner.landscape import FOOD, SIGHT
 
 COLORS = {"slow": BLUE, "fast": ORANGE}
 """Color of each arm of part B, as a learner or as the origin of genes."""
-GENES = {SIGHT: ("sight", GREEN), FOOD: ("food", BLUE)}
+GENE_COLORS = {"sight": GREEN, "food": BLUE}
 SHORT, TALL = (5.6, 3.2), (5.6, 4.4)
 """Sizes of figures [inch]."""
 
@@ -117,11 +117,12 @@ def draw_learning(rows: pl.DataFrame) -> Figure:
         for axes, learner in zip(panels, behavior.LEARNERS, strict=True):
             steps = intake.filter(pl.col("learner") == learner).sort("step").partition_by("step", as_dict=True)
             ages = [float(step) / 1000 for (step,) in steps]
-            for gene, (label, color) in GENES.items():
+            for name, gene in behavior.GENES.items():
+                color = GENE_COLORS[name]
                 bounds = [mean_interval((1000 * worlds[gene]).to_list()) for worlds in steps.values()]
                 mean, low, high = np.array([[each.mean, each.low, each.high] for each in bounds], np.float64).T
                 axes.fill_between(ages, low, high, color=color, alpha=0.2, linewidth=0)
-                axes.plot(ages, mean, color=color, label=f"weight of {label}")
+                axes.plot(ages, mean, color=color, label=f"weight of {name}")
             draw_zero_line(axes)
             axes.set_title(f"{learner} learner")
             axes.set_xlabel("age [1,000 steps]")
@@ -155,8 +156,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     folder = parser.parse_args(arguments).folder
     tables = {"evolution": draw_ends, "swap": draw_shares, "decoy": draw_losses}
     rows = folder / "behavior" / behavior.ROWS
-    founders = [folder / name for name in (landscape.FOUNDERS, landscape.OUTCOMES)]
-    evolution.require_files(parser, [*founders, *(folder / part / evolution.WORLDS for part in tables), rows])
+    landscapes = [folder / name for name in (landscape.FOUNDERS, landscape.OUTCOMES)]
+    evolution.require_files(parser, [*landscapes, *(folder / part / evolution.WORLDS for part in tables), rows])
     arms = landscape.read_arms(folder)
     slopes = {arm: landscape.slopes(founders, "food") for arm, founders in arms.items()}
     save_figure(draw_slopes(slopes), folder / "landscape.svg")

@@ -185,6 +185,13 @@ def require_files(parser: argparse.ArgumentParser, paths: Iterable[Path]) -> Non
             parser.error(f"{path}: there is no such file")
 
 
+def require_groups(parser: argparse.ArgumentParser, found: pl.Series, needed: Iterable[str]) -> None:
+    """Ends the program with a message and exit code 2 if a table has no world of a group that its tests compare."""
+    lacking = [name for name in needed if name not in set(found)]
+    if lacking:
+        parser.error(f"no worlds of {', '.join(lacking)}; the tests need some of each")
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Reduces runs to tables, or prints the tests of such tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -199,6 +206,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         return
     require_files(parser, [options.folder / WORLDS])
     worlds = pl.read_csv(options.folder / WORLDS)
+    require_groups(parser, worlds["arm"], ARMS)
     means = ["alive_all_steps", "mean_lifetime", "food_per_step", "generation", SIGHT, FOOD, ACTION]
     with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=48, tbl_width_chars=160):
         extinct = pl.col("extinct_step").is_not_null().sum().alias("extinct")

@@ -29,6 +29,7 @@ from hedon_studies.same_genes_another_learner.evolution import (
     WORLDS,
     provenance,
     require_files,
+    require_groups,
 )
 
 
@@ -108,8 +109,10 @@ class Part:
         elif options.verb == "worlds":
             self.reduce(options.evolution, options.runs, options.folder)
         else:
+            worlds = pl.read_csv(options.folder / WORLDS)
+            require_groups(parser, worlds["treatment"], self.treatments)
             with pl.Config(tbl_rows=20, tbl_cols=12, fmt_str_lengths=60, tbl_width_chars=200):
-                print(self.answers(pl.read_csv(options.folder / WORLDS)))
+                print(self.answers(worlds))
 
     def answers(self, worlds: pl.DataFrame) -> pl.DataFrame:
         """The tests, and whether each came out as expected; open until all worlds have run.

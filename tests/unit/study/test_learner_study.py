@@ -110,9 +110,8 @@ PAGE_PARTS = [("swap", "## The swap"), ("decoy", "## Decoys"), ("behavior", "## 
 def test_the_page_has_the_tests_of_each_part(part: str, heading: str) -> None:
     expected = []
     for test in committed_tests(part).iter_rows(named=True):
-        scale, digits = (
-            (1000, 2) if "intake" in test["test"] and part == "behavior" else (1, 3)
-        )  # foods per 1,000 steps
+        per_thousand_steps = part == "behavior" and "intake" in test["test"]
+        scale, digits = (1000, 2) if per_thousand_steps else (1, 3)
         effect, low, high = (f"{scale * test[name]:.{digits}f}" for name in ("effect", "low", "high"))
         shown = f"{effect} ({low} … {high})" if effect.startswith("-") else f"+{effect} ({low} … {high})"
         expected.append((shown.replace("-", "\N{MINUS SIGN}"), p_text(test), test["answer"]))

@@ -64,6 +64,23 @@ def test_a_missing_table_is_named(words: list[str], capsys: pytest.CaptureFixtur
         assert "there is no such file" in capsys.readouterr().err
 
 
+def test_tests_of_a_part_without_one_of_its_groups_say_which(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    contests(0.6, 0.4).filter(pl.col("treatment") == "fast").write_csv(tmp_path / evolution.WORLDS)
+    with pytest.raises(SystemExit):
+        swap.PART.main("", ["tests", str(tmp_path)])
+    assert "error: no worlds of slow; the tests need some of each" in capsys.readouterr().err
+    pl.DataFrame({"learner": ["fast"]}).write_parquet(tmp_path / "fast.parquet")
+    for name, message in (
+        ("fast.parquet", "no worlds of baseline"),
+        (evolution.WORLDS, "not a table that `run` wrote"),
+    ):
+        with pytest.raises(SystemExit):
+            behavior.main(["tests", str(tmp_path / name)])
+        assert message in capsys.readouterr().err
+
+
 def test_both_sides_of_a_contest_start_with_half(evolved: Path) -> None:
     living = pl.read_parquet(evolved / evolution.LIVING)
     founders = swap.PART.treatments["slow"].founders(living, PAIR)
