@@ -19,8 +19,11 @@ def test_a_chapter_leads_to_its_moment(width, watch):
     with serving(demo_server()) as server:
         watched = watch(link_of(server), **sized(width))
         watched.get("hedon.play(false)")
-        watched.until("hedon.source.series.step.at(-1) === hedon.source.index.steps[0]")
-        watched.until(f"hedon.marks.length > 1 && {LIST}.options.length === hedon.marks.length + 1")
+        # Marks change until all records are read: the peak moves with the series, and genes leave drift once the lives are known.
+        watched.until("hedon.source.loaded && hedon.source.series.step.at(-1) === hedon.source.index.steps[0]")
+        drawn = watched.get("(hedon.seek(0), hedon.pictures)")
+        watched.until(f"hedon.pictures > {drawn} + 2")
+        assert watched.get(f"hedon.marks.length > 1 && {LIST}.options.length === hedon.marks.length + 1")
         marks = watched.get("hedon.marks")
         steps = sorted(mark["step"] for mark in marks)
         told = watched.get(f"[...{LIST}.options].map((each) => each.text)")
