@@ -19,7 +19,8 @@ from hedon_studies.same_genes_another_learner.answer import EVOLUTION, LANDSCAPE
 from hedon_studies.same_genes_another_learner.evolution import EVOLVING, PRESET, SEEN
 from hedon_studies.same_genes_another_learner.landscape import ACTION, FOOD, SIGHT
 
-drawing: Any = load("hedon_studies.same_genes_another_learner.drawing")  # Matplotlib is slow to import
+# Imported late: Matplotlib is slow to import.
+drawing: Any = load("hedon_studies.same_genes_another_learner.drawing", suppress_warning=True)
 
 FOLDER = Path(__file__).parent
 RANGE = (-2.0, 2.0)

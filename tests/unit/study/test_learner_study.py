@@ -202,7 +202,9 @@ def test_it_goes_from_settings_to_a_page(tmp_path: Path) -> None:
     assert len(tables["learner_evolution_world"]) == 4
     shown = hedon("study", "report", "learner-landscape", "--seeds", "3", "--steps", "128", cwd=tmp_path)
     assert shown.returncode == 0, shown.stderr
-    assert NAME in hedon("study", "list", cwd=tmp_path).stdout
+    listed = hedon("study", "list", cwd=tmp_path)
+    assert NAME in listed.stdout
+    assert listed.stderr == ""
 
 
 @pytest.mark.long
