@@ -20,7 +20,7 @@ FOLDER = Path(__file__).parent
 SETTINGS = tomllib.loads((FOLDER / "study.toml").read_text(encoding="utf-8"))
 MIXED, EVOLVING = SETTINGS["mixed"], SETTINGS["evolving"]
 GENE = "w_see_agent"
-SEEDS = tuple(range(1, SETTINGS["seeds"] + 1))
+SEEDS = tuple(range(SETTINGS["seeds"][0], SETTINGS["seeds"][1] + 1))
 FORAGER, TRACKER = {GENE: MIXED["forager"]}, {GENE: MIXED["tracker"]}
 NAMED = 3
 """Number of tests that the study names, in both of its items."""
