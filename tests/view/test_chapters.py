@@ -19,7 +19,7 @@ def test_a_chapter_leads_to_its_moment(width, watch):
     with serving(demo_server()) as server:
         watched = watch(link_of(server), **sized(width))
         watched.get("hedon.play(false)")
-        # Marks change until all records are read: the peak moves with the series, and genes leave drift once the lives are known.
+        # Marks change until all records are read: the peak moves with the series, and drift needs the lives.
         watched.until("hedon.source.loaded && hedon.source.series.step.at(-1) === hedon.source.index.steps[0]")
         drawn = watched.get("(hedon.seek(0), hedon.pictures)")
         watched.until(f"hedon.pictures > {drawn} + 2")
