@@ -136,7 +136,7 @@ STUDY = Study(
     "when their energy is above a threshold live together. Is each of them fitter where it is rare?",
     (
         Item(
-            "mating-strategies",
+            "mating-frequency",
             "Fitness of foragers against their frequency",
             "The fitness curves cross at about 25 % of foragers.",
             make_mixed,
