@@ -1,21 +1,20 @@
 """Do shorter lives favor faster learning? README.md has the claim, the rule and the deviations."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import hedon.assay
 import hedon.figure
 from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive
-from hedon.config import Config
 from hedon.figure import NamedFigure
-from hedon.record import Founders, make_founders
 from hedon.statistic import mean_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
+from hedon_studies.founder import fitness_slope, spread_gene
 from hedon_studies.rule import Test, mean_test, verdict_table
 
 FOLDER = Path(__file__).parent
@@ -31,20 +30,6 @@ BINS = np.linspace(*RANGE, 6)
 """Edges of the ranges of the gene for which mean numbers of children are listed."""
 SCALE = Scale(tuple(range(1501, 1531)), 32_768)
 
-
-def spread_rates(config: Config) -> Founders:
-    """Founders whose learning rates and neutral genes are spread independently and evenly, and whose weights are equal.
-
-    Args:
-        config: Settings of the worlds.
-    """
-    spread = hedon.assay.spread_founders(config, hedon.assay.Spread(*RANGE), next(iter(config.species)))
-    genomes = np.array(spread.values)
-    for gene, value in WEIGHTS.items():
-        genomes[:, spread.genes.index(gene)] = value
-    return make_founders(spread.genes, genomes, list(spread.group))
-
-
 CONDITIONS = {
     hazard: Condition(
         f"{hazard:g} times the hazard",
@@ -54,21 +39,10 @@ CONDITIONS = {
             "genome.mutation_scale=0",
             f"hazard.schedule.scale.points=[[0, {hazard}]]",
         ),
-        founders=spread_rates,
+        founders=partial(spread_gene, low=RANGE[0], high=RANGE[1], fixed=WEIGHTS),
     )
     for hazard in HAZARDS
 }
-
-
-def slope(genes: NDArray[np.floating[Any]], children: NDArray[np.floating[Any]]) -> float | None:
-    """The slope of relative fitness on a gene, by least squares; None without children.
-
-    Args:
-        genes: Gene of each founder, shape (founders,).
-        children: Number of its children, shape (founders,).
-    """
-    mean = children.mean()
-    return float(np.polyfit(genes, children / mean, 1)[0]) if mean > 0 else None
 
 
 def measure(world: WorldRecord) -> dict[str, Any]:
@@ -90,9 +64,9 @@ def measure(world: WorldRecord) -> dict[str, Any]:
         "lifespan": float(lifespans.mean()),
         "unfinished": float((lifespans >= world.last_step).mean()),
         "alive": mean_alive(world.population),
-        "slope": slope(genes, children),
+        "slope": fitness_slope(genes, children),
         "children": [float(relative[bins == i].mean()) for i in range(len(BINS) - 1)],
-        **{name: slope(founders[name].to_numpy(), children) for name in world.neutral_names},
+        **{name: fitness_slope(founders[name].to_numpy(), children) for name in world.neutral_names},
     }
 
 

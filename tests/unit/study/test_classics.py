@@ -13,8 +13,10 @@ from hedon.compare.source import read_table
 from hedon.figure.style import svg_bytes
 from hedon.statistic import FOR_VERDICT as WORLDS
 from hedon.statistic import mean_interval
-from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, draw_slopes, named_test, slope
+from hedon_studies.founder import fitness_slope
+from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, draw_slopes, named_test
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
+from hedon_studies.optimal_reward.study import FREE, GATED, draw_intake, named_tests
 from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, verdict_table
 
 RESULTS = Path(__file__).parents[3] / "docs" / "results"
@@ -92,13 +94,41 @@ def test_lifespan_and_plasticity_recovers_a_known_effect() -> None:
 def test_the_slope_of_relative_fitness_on_a_gene_is_found() -> None:
     genes = np.linspace(-1, 1.5, 20_000)
     children = np.random.default_rng(4).poisson(2.0 * (1 + 0.3 * genes))
-    assert slope(genes, children) == pytest.approx(0.3 / (1 + 0.3 * genes.mean()), abs=0.03)
-    assert slope(genes, np.zeros(20_000)) is None
+    assert fitness_slope(genes, children) == pytest.approx(0.3 / (1 + 0.3 * genes.mean()), abs=0.03)
+    assert fitness_slope(genes, np.zeros(20_000)) is None
 
 
 def test_worlds_without_children_give_a_figure_without_points() -> None:
     childless = [row | {"slope": None} for row in rows(0.05, seeds=2)]
     assert svg_bytes(draw_slopes("Do shorter lives favor faster learning?", childless).figure)
+
+
+def water_rows(gated: float, free: float, seeds: int = WORLDS) -> list[dict]:
+    """Rows of worlds whose slopes are around `gated` where food needs water, and around `free` elsewhere."""
+    rng = np.random.default_rng(3)
+    return [
+        {"condition": condition, "seed": seed, "died out": False, "slope": rng.normal(mean, 0.1), "food": 10.0}
+        | {"intake": [8.0, 9.0, 11.0, 12.0]}
+        for seed in range(seeds)
+        for condition, mean in ((GATED, gated), (FREE, free))
+    ]
+
+
+def test_liking_a_means_is_fit_only_if_it_is_fitter_than_where_it_is_useless() -> None:
+    assert answers(*named_tests(water_rows(0.5, 0.0))) == [YES, YES]
+    assert answers(*named_tests(water_rows(0.5, 0.5))) == [YES, OPEN]
+    assert answers(*named_tests(water_rows(0.0, 0.5))) == [OPEN, NO]
+    assert answers(*named_tests(water_rows(0.5, 0.0, seeds=WORLDS - 1))) == [OPEN, OPEN]
+
+
+def test_a_pair_without_one_of_its_worlds_has_no_difference() -> None:
+    rows = water_rows(0.5, 0.0)
+    slope, difference = named_tests(rows[:-1])
+    assert (slope.worlds, difference.worlds, difference.values) == (WORLDS, WORLDS - 1, WORLDS - 1)
+    starved = [row | {"slope": None, "food": 0.0, "died out": True} if row["seed"] == 0 else row for row in rows]
+    slope, difference = named_tests(starved)
+    assert (slope.values, slope.extinct, difference.values, difference.extinct) == (WORLDS - 1, 1, WORLDS - 1, 2)
+    assert svg_bytes(draw_intake("Is it fit to like what is only a means?", starved).figure)
 
 
 def test_the_page_on_lifespans_has_the_numbers_of_its_tables() -> None:
@@ -176,6 +206,16 @@ def test_lifespan_and_plasticity_runs_from_its_settings_to_its_page(tmp_path: Pa
     tables = run_quick(tmp_path, "lifespan-and-plasticity")
     assert [row["hazard"] for row in tables["lifespan_world"]] == list(HAZARDS)
     assert len(tables["lifespan_control"]) == 16
+
+
+@pytest.mark.more
+def test_optimal_reward_runs_from_its_settings_to_its_page(tmp_path: Path) -> None:
+    tables = run_quick(tmp_path, "optimal-reward")
+    assert [row["condition"] for row in tables["optimal_reward_world"]] == [GATED, FREE]
+    gated, free = tables["optimal_reward_world"]
+    assert gated["food"] <= gated["water"], "a meal uses up a unit of water, and founders begin without any"
+    assert gated["food"] < free["food"]
+    assert len(tables["optimal_reward_control"]) == 2 * 16
 
 
 def test_mating_strategies_runs_from_its_settings_to_its_page(tmp_path: Path) -> None:

@@ -1,0 +1,222 @@
+"""Is a liking for water fit if water is only a means to eat? README.md has the claim, the rule and the deviations."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+import hedon.figure
+from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive
+from hedon.figure import NamedFigure
+from hedon.statistic import mean_interval
+from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
+from hedon_studies.founder import fitness_slope, spread_gene
+from hedon_studies.rule import Test, mean_test, verdict_table
+
+FOLDER = Path(__file__).parent
+NAME = "optimal-reward"
+GENE = "w_water"
+BOUNDS = (0.0, 1.0)
+"""Range of the founders' genes, except the two weights."""
+WEIGHTS = {"w_normal": 1.0, "w_action": 0.0}
+"""The weights of all founders."""
+BINS = np.linspace(*BOUNDS, 5)
+"""Edges of the ranges of the gene for which mean intakes are listed."""
+SCALE = Scale(tuple(range(1701, 1731)), 20_480)
+WATER = (
+    "store.water.capacity=5",
+    "store.water.initial=0",
+    "store.water.child_share=0.5",
+    "food.water.gives={water=1}",
+    "food.water.growth_rate=3.5",
+    "food.water.capacity=400",
+    "food.water.initial_count=400",
+    "genome.mutation_scale=0",
+    "genome.action.initial_sd=0",
+)
+"""As much water as food, and a store for it that nothing else uses."""
+GATED, FREE = "food needs water", "food needs nothing"
+MEALS = {
+    GATED: ("food.normal.gives={energy=2, water=-1}", "food.normal.needs={water=1}"),
+    FREE: ("food.normal.gives={energy=2}",),
+}
+CONDITIONS = {
+    name: Condition(
+        name, "appetite", (*WATER, *meals), founders=partial(spread_gene, low=BOUNDS[0], high=BOUNDS[1], fixed=WEIGHTS)
+    )
+    for name, meals in MEALS.items()
+}
+
+
+def measure(world: WorldRecord) -> dict[str, Any]:
+    """The measures of one world.
+
+    Returns:
+        "food", "water" and "children": mean numbers that founders ate, drank and had. "alive": mean number of agents
+        alive. "slope": slope of founders' relative intake of food on the gene; "children slope": that of their number
+        of children. "intake": mean intake of food in each range of `BINS`. A slope of intake for each neutral gene.
+    """
+    founders = world.agents.filter(pl.col("parent_id").is_null())
+    food, water, children = (
+        founders[name].to_numpy().astype(np.float64) for name in ("eaten_normal", "eaten_water", "children")
+    )
+    genes = founders[GENE].to_numpy()
+    bins = np.digitize(genes, BINS[1:-1])
+    return {
+        "seed": world.seed,
+        "died out": world.extinct_step is not None,
+        "food": float(food.mean()),
+        "water": float(water.mean()),
+        "children": float(children.mean()),
+        "alive": mean_alive(world.population),
+        "slope": fitness_slope(genes, food),
+        "children slope": fitness_slope(genes, children),
+        "intake": [float(food[bins == i].mean()) for i in range(len(BINS) - 1)],
+        **{name: fitness_slope(founders[name].to_numpy(), food) for name in world.neutral_names},
+    }
+
+
+def slopes(rows: Sequence[Mapping[str, Any]], condition: str, key: str = "slope") -> dict[int, float]:
+    """The slopes in the worlds of a condition, by seed, where they are known."""
+    return {row["seed"]: row[key] for row in rows if row["condition"] == condition and row[key] is not None}
+
+
+def gains(rows: Sequence[Mapping[str, Any]], key: str = "slope") -> list[float]:
+    """By how much the slope is larger where food needs water, for each pair of worlds of equal seeds."""
+    gated, free = slopes(rows, GATED, key), slopes(rows, FREE, key)
+    return [gated[seed] - free[seed] for seed in gated if seed in free]
+
+
+def named_tests(rows: Sequence[Mapping[str, Any]], key: str = "slope") -> tuple[Test, Test]:
+    """The two tests of the claim, from the rows of all worlds.
+
+    Args:
+        rows: Rows of worlds, each with "condition", "seed", "died out" and the slope.
+        key: Column of the slope.
+    """
+    gated = [row for row in rows if row["condition"] == GATED]
+    pairs = {row["seed"] for row in gated} & {row["seed"] for row in rows if row["condition"] == FREE}
+    extinct = sum(row["died out"] for row in gated)
+    both = sum(row["died out"] for row in rows if row["seed"] in pairs)
+    return (
+        mean_test(
+            "liking water is fit where food needs it: slope of intake on the gene",
+            list(slopes(rows, GATED, key).values()),
+            len(gated),
+            extinct,
+            above=True,
+        ),
+        mean_test(
+            "it is fit because food needs water: that slope less the one where food needs nothing",
+            gains(rows, key),
+            len(pairs),
+            both,
+            above=True,
+        ),
+    )
+
+
+def control_rows(rows: Sequence[Mapping[str, Any]], neutral: Sequence[str]) -> list[dict[str, Any]]:
+    """Negative control: both tests with each neutral gene in place of the liking for water.
+
+    Args:
+        rows: Rows of worlds.
+        neutral: Names of the neutral genes.
+    """
+    return [
+        {"gene": gene, "test": test, "effect": found.effect, "low": found.low, "high": found.high, "p": found.p}
+        for gene in neutral
+        for test, found in zip(("slope", "difference"), named_tests(rows, gene), strict=True)
+    ]
+
+
+def condition_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """A row for each condition: what founders ate, and what their gene is worth, as means over worlds."""
+    found = []
+    for condition in CONDITIONS:
+        worlds = [row for row in rows if row["condition"] == condition]
+        if worlds:
+            bounds = mean_interval(list(slopes(rows, condition).values()))
+            children = mean_interval(list(slopes(rows, condition, "children slope").values()))
+            means = {
+                key: float(np.mean([row[key] for row in worlds])) for key in ("food", "water", "children", "alive")
+            }
+            intake = np.nanmean([row["intake"] for row in worlds], axis=0)
+            labels = [f"{low:g} to {high:g}" for low, high in pairwise(BINS)]
+            found.append(
+                {"condition": condition, "worlds": len(worlds), **means}
+                | {"slope": bounds.mean, "low": bounds.low, "high": bounds.high}
+                | {"children slope": children.mean, "children low": children.low, "children high": children.high}
+                | dict(zip(labels, intake.tolist(), strict=True))
+            )
+    return found
+
+
+def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
+    """Makes the figure, and the tables of the answer, of conditions, of neutral genes and of worlds."""
+    question = "Is it fit to like what is only a means?"
+    rows = [
+        {"condition": name} | measure(world)
+        for name, condition in CONDITIONS.items()
+        for world in inputs.worlds.get(condition.label, ())
+    ]
+    if not rows:
+        note = missing(CONDITIONS.values(), inputs)
+        yield NamedFigure(NAME, question, hedon.figure.draw_message("no worlds yet"), note)
+        return
+    yield draw_intake(question, rows)
+    note = missing_note(inputs, tuple(CONDITIONS.values()), SCALE)
+    yield verdict_table("optimal_reward_verdict", named_tests(rows), note)
+    yield make_table("optimal_reward_condition", "Each condition: what founders eat, by the gene", condition_rows(rows))
+    neutral = [name for name in rows[0] if name.startswith("neutral_")]
+    title = "Negative control: the same tests with each neutral gene"
+    yield make_table("optimal_reward_control", title, control_rows(rows, neutral), shown=False)
+    plain = [{key: value for key, value in row.items() if key != "intake"} for row in rows]
+    yield make_table("optimal_reward_world", "Each world: its founders, and slopes on their genes", plain, shown=False)
+
+
+def draw_intake(question: str, rows: Sequence[Mapping[str, Any]]) -> NamedFigure:
+    """Draws the relative intake of food over the gene: a pale line for each world, and means with intervals."""
+    middle = (BINS[:-1] + BINS[1:]) / 2
+    colors = {GATED: hedon.figure.BLUE, FREE: hedon.figure.VERMILION}
+    with hedon.figure.styled():
+        figure = hedon.figure.new_figure(5.6, 3.6)
+        axes = figure.subplots()
+        axes.axhline(1, color=hedon.figure.PALE, linewidth=0.8)
+        for condition, color in colors.items():
+            worlds = [row for row in rows if row["condition"] == condition and row["food"] > 0]
+            relative = np.array([np.array(row["intake"]) / row["food"] for row in worlds]).reshape(-1, len(middle))
+            for line in relative:
+                axes.plot(middle, line, color=color, linewidth=0.5, alpha=0.2)
+            intervals = [mean_interval(column[np.isfinite(column)].tolist()) for column in relative.T]
+            bounds = np.array([[each.mean, each.low, each.high] for each in intervals], np.float64)
+            axes.plot(middle, bounds[:, 0], "o-", color=color, label=condition)
+            axes.vlines(middle, bounds[:, 1], bounds[:, 2], color=color, linewidth=2)
+        axes.legend(frameon=False)
+        axes.set_xlabel("liking for water (weight of water; that of food is 1)")
+        axes.set_ylabel("founders' relative intake of food")
+    caption = "A pale line for each world; means over worlds, from five on with 95 % intervals."
+    return NamedFigure(NAME, question, figure, caption)
+
+
+STUDY = Study(
+    NAME,
+    "Optimal reward",
+    "Singh et al. (2010), 10.1109/TAMD.2010.2051031: the best reward for a learner also pays for what is only a means "
+    "to its goal. Is a liking for water fit where food needs water?",
+    (
+        Item(
+            NAME,
+            "Fitness of a liking for water",
+            "The best reward pays for means, too.",
+            make,
+            tuple(CONDITIONS.values()),
+            SCALE,
+        ),
+    ),
+    (FOLDER / "expected.md").read_text(encoding="utf-8"),
+)
