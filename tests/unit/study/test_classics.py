@@ -18,6 +18,8 @@ from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, d
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
 from hedon_studies.optimal_reward.study import FREE, GATED, draw_intake, named_tests
 from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, verdict_table
+from hedon_studies.two_needs import study as needs
+from hedon_studies.two_needs.study import ADDITIVE, ONE, TWO, draw_changes
 
 RESULTS = Path(__file__).parents[3] / "docs" / "results"
 
@@ -131,6 +133,32 @@ def test_a_pair_without_one_of_its_worlds_has_no_difference() -> None:
     assert svg_bytes(draw_intake("Is it fit to like what is only a means?", starved).figure)
 
 
+def need_rows(two: float, one: float, additive: float, seeds: int = WORLDS) -> list[dict]:
+    """Rows of worlds in which the share of reducers changes by about these numbers."""
+    rng = np.random.default_rng(4)
+    return [
+        {"condition": condition, "seed": seed, "died out": False, "change": rng.normal(mean, 0.05)}
+        for seed in range(seeds)
+        for condition, mean in ((TWO, two), (ONE, one), (ADDITIVE, additive))
+    ]
+
+
+def test_drive_reduction_must_be_fitter_with_two_needs_than_with_one() -> None:
+    assert answers(*needs.named_tests(need_rows(0.2, 0.0, 0.2))) == [YES, YES, OPEN]
+    assert answers(*needs.named_tests(need_rows(0.2, 0.2, 0.0))) == [YES, OPEN, YES]
+    assert answers(*needs.named_tests(need_rows(-0.2, 0.0, -0.4))) == [NO, NO, YES]
+    assert answers(*needs.named_tests(need_rows(0.2, 0.0, 0.0, seeds=WORLDS - 1))) == [OPEN] * 3
+
+
+def test_worlds_without_a_partner_count_in_the_first_test_only() -> None:
+    rows = need_rows(0.2, 0.0, 0.2)
+    rows = [row | {"died out": row["seed"] == 1} for row in rows if (row["seed"], row["condition"]) != (0, ONE)]
+    first, second, third = needs.named_tests(rows)
+    assert [test.worlds for test in (first, second, third)] == [WORLDS, WORLDS - 1, WORLDS]
+    assert [test.extinct for test in (first, second, third)] == [1, 2, 2]
+    assert svg_bytes(draw_changes("Is drive reduction fitter than pay per meal?", rows).figure)
+
+
 def test_the_page_on_lifespans_has_the_numbers_of_its_tables() -> None:
     page = " ".join((RESULTS / "lifespan.md").read_text(encoding="utf-8").split())
     worlds = pl.read_csv(RESULTS / "lifespan" / "worlds.csv")
@@ -216,6 +244,16 @@ def test_optimal_reward_runs_from_its_settings_to_its_page(tmp_path: Path) -> No
     assert gated["food"] <= gated["water"], "a meal uses up a unit of water, and founders begin without any"
     assert gated["food"] < free["food"]
     assert len(tables["optimal_reward_control"]) == 2 * 16
+
+
+@pytest.mark.more
+def test_two_needs_runs_from_its_settings_to_its_page(tmp_path: Path) -> None:
+    tables = run_quick(tmp_path, "two-needs")
+    rows = {row["condition"]: row for row in tables["two_needs_world"]}
+    assert list(rows) == [TWO, ONE, ADDITIVE]
+    for row in rows.values():
+        assert row["alive"] > 0
+        assert min(row[f"{group} {kind}"] for group in ("reducers", "eaters") for kind in ("food", "water")) > 0
 
 
 def test_mating_strategies_runs_from_its_settings_to_its_page(tmp_path: Path) -> None:

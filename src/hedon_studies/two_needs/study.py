@@ -1,0 +1,214 @@
+"""Is it fitter to be rewarded for reducing a drive than for each meal? README.md has the claim and the rule."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import hedon.figure
+from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive
+from hedon.assay import by_gene, world_lines
+from hedon.figure import NamedFigure
+from hedon.statistic import mean_interval
+from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
+from hedon_studies.rule import Test, mean_test, verdict_table
+
+FOLDER = Path(__file__).parent
+NAME = "two-needs"
+GENE = "w_drive_reduction"
+SCALE = Scale(tuple(range(1801, 1831)), 40_960)
+WORLD = (
+    "arena.width=480",
+    "arena.height=320",
+    "population.capacity=150",
+    "population.initial_count=120",
+    "hazard.alpha_age=5e-5",
+    "birth.kappa=2e-3",
+    "genome.mutation_scale=0",
+    *(
+        f"food.{kind}.{setting}"
+        for kind in ("normal", "water")
+        for setting in ("growth_rate=2", "capacity=200", "initial_count=200")
+    ),
+)
+"""A small world with much food of two kinds."""
+ENERGY = (
+    "energy.capacity=20",
+    "energy.initial=10",
+    "energy.scale=20",
+    "energy.set_point.initial_mean=1",
+    "energy.set_point.initial_sd=0",
+    "reward.drive_reduction_coef=1e-6",  # not 0, without which there is no drive whose reduction a weight could pay
+    "reward.pay.drive_reduction.coef=20",  # so that a meal that fills the only need pays as much as one per meal
+)
+"""A store of energy that 20 meals fill, and drives toward a full one."""
+STORE = (
+    "food.water.gives={water=1}",
+    "store.water.capacity=20",
+    "store.water.initial=10",
+    "store.water.scale=20",
+    "store.water.basic_cost=0.006",
+    "store.water.hazard_weight=1",
+    "store.water.child_share=0.5",
+    "store.water.set_point.initial_mean=1",
+    "store.water.set_point.initial_sd=0",
+)
+"""A second need: without water, agents die as they do without energy."""
+TWO, ONE, ADDITIVE = "two needs", "one need", "two needs, additive drive"
+NEEDS = {
+    TWO: STORE,
+    ONE: ("food.water.gives={energy=1}",),
+    ADDITIVE: (*STORE, "reward.drive_exponent=1", "reward.drive_root=1"),
+}
+REDUCERS = {GENE: 1.0, "w_normal": 0.0, "w_water": 0.0, "w_action": 0.0}
+"""Genes of agents that are paid for reducing the drive."""
+EATERS = {GENE: 0.0, "w_normal": 1.0, "w_water": 1.0, "w_action": 0.0}
+"""Genes of agents that are paid for each meal."""
+
+
+def _half(genes: Mapping[str, float]) -> str:
+    return ",".join(f"{name.removeprefix('w_')}={value:g}" for name, value in genes.items()) + ":0.5"
+
+
+CONDITIONS = {
+    name: Condition(name, "appetite", (*WORLD, *ENERGY, *need), founders=f"{_half(REDUCERS)},{_half(EATERS)}")
+    for name, need in NEEDS.items()
+}
+
+
+def measure(world: WorldRecord) -> dict[str, Any]:
+    """The measures of one world.
+
+    Returns:
+        "change": share of reducers at the end, less the share at the start. "generations": mean generation of those
+        alive at the end. "alive": mean number of agents alive. For each group, its "food" and "water": pieces eaten
+        per 1,000 steps of life.
+    """
+    agents = world.agents.sort("agent_id")
+    lines = world_lines(agents, world.seed, by_gene(agents, REDUCERS, EATERS), world.last_step)
+    steps = (agents["death_step"].fill_null(world.last_step) - agents["birth_step"].clip(0)).to_numpy()
+    reduces = agents[GENE].to_numpy() > 0.5
+    rates = {
+        f"{group} {name}": 1000 * float(agents[f"eaten_{kind}"].to_numpy()[chosen].sum() / max(steps[chosen].sum(), 1))
+        for group, chosen in (("reducers", reduces), ("eaters", ~reduces))
+        for name, kind in (("food", "normal"), ("water", "water"))
+    }
+    return {
+        "seed": world.seed,
+        "died out": world.extinct_step is not None,
+        "change": float(lines.share[-1] - lines.share[0]),
+        "generations": float(lines.generation[-1]),
+        "alive": mean_alive(world.population),
+        **rates,
+    }
+
+
+def changes(rows: Sequence[Mapping[str, Any]], condition: str) -> dict[int, float]:
+    """The changes of the share of reducers in the worlds of a condition, by seed."""
+    return {row["seed"]: row["change"] for row in rows if row["condition"] == condition}
+
+
+def named_tests(rows: Sequence[Mapping[str, Any]]) -> list[Test]:
+    """The three tests, from the rows of all worlds, each with "condition", "seed", "died out" and "change"."""
+    two = changes(rows, TWO)
+
+    def died_out(seeds: set[int], *conditions: str) -> int:
+        return sum(row["died out"] for row in rows if row["seed"] in seeds and row["condition"] in conditions)
+
+    tests = [
+        mean_test(
+            "with two needs, drive reduction is fitter: change of its share",
+            list(two.values()),
+            len(two),
+            died_out(set(two), TWO),
+            above=True,
+        )
+    ]
+    for name, other in (("than with one need", ONE), ("than with an additive drive", ADDITIVE)):
+        found = changes(rows, other)
+        pairs = two.keys() & found.keys()
+        values = [two[seed] - found[seed] for seed in sorted(pairs)]
+        extinct = died_out(set(pairs), TWO, other)
+        tests.append(
+            mean_test(f"its share grows more {name}: difference of changes", values, len(pairs), extinct, above=True)
+        )
+    return tests
+
+
+def condition_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """A row for each condition, with means over worlds."""
+    found = []
+    for condition in CONDITIONS:
+        worlds = [row for row in rows if row["condition"] == condition]
+        if worlds:
+            bounds = mean_interval(list(changes(rows, condition).values()))
+            keys = [key for key in worlds[0] if key not in ("condition", "seed", "died out", "change")]
+            means = {key: float(np.mean([row[key] for row in worlds])) for key in keys}
+            found.append(
+                {"condition": condition, "worlds": len(worlds)}
+                | {"change": bounds.mean, "low": bounds.low, "high": bounds.high}
+                | means
+            )
+    return found
+
+
+def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
+    """Makes the figure, and the tables of the answer, of conditions and of worlds."""
+    question = "Is drive reduction fitter than pay per meal?"
+    rows = [
+        {"condition": name} | measure(world)
+        for name, condition in CONDITIONS.items()
+        for world in inputs.worlds.get(condition.label, ())
+    ]
+    if not rows:
+        note = missing(CONDITIONS.values(), inputs)
+        yield NamedFigure(NAME, question, hedon.figure.draw_message("no worlds yet"), note)
+        return
+    yield draw_changes(question, rows)
+    note = missing_note(inputs, tuple(CONDITIONS.values()), SCALE)
+    yield verdict_table("two_needs_verdict", named_tests(rows), note)
+    yield make_table("two_needs_condition", "Each condition: means over worlds", condition_rows(rows))
+    yield make_table("two_needs_world", "Each world: how the share of reducers changed", rows, shown=False)
+
+
+def draw_changes(question: str, rows: Sequence[Mapping[str, Any]]) -> NamedFigure:
+    """Draws the change of the share of reducers in each condition: a dot for each world, and means with intervals."""
+    with hedon.figure.styled():
+        figure = hedon.figure.new_figure(5.6, 3.2)
+        axes = figure.subplots()
+        hedon.figure.draw_zero_line(axes)
+        for place, condition in enumerate(CONDITIONS):
+            worlds = [row for row in rows if row["condition"] == condition]
+            spread = np.linspace(-0.25, 0.05, len(worlds)) + place
+            for x, row in zip(spread, worlds, strict=True):
+                marker = "x" if row["died out"] else "o"
+                axes.plot(x, row["change"], marker, color=hedon.figure.PALE, markersize=3)
+            interval = mean_interval(list(changes(rows, condition).values()))
+            bounds = np.array([interval.low, interval.high], np.float64)  # None becomes NaN
+            axes.plot([place + 0.15] * 2, bounds, color=hedon.figure.BLUE, linewidth=2)
+            if interval.mean is not None:
+                axes.plot(place + 0.15, interval.mean, "o", color=hedon.figure.BLUE, markersize=6)
+        axes.set_xticks(range(len(CONDITIONS)), list(CONDITIONS))
+        axes.set_ylabel("change of the share of reducers")
+    caption = "A dot for each world, a cross if it died out; means over worlds, from five on with 95 % intervals."
+    return NamedFigure(NAME, question, figure, caption)
+
+
+STUDY = Study(
+    NAME,
+    "Two needs",
+    "Keramati & Gutkin (2014), 10.7554/eLife.04811: rewards are reductions of a drive, the distance of all needs from "
+    "their set points. Is such a reward fitter than pay per meal, and only where there are two needs?",
+    (
+        Item(
+            NAME,
+            "Drive reduction against pay per meal",
+            "Reward is the reduction of a drive.",
+            make,
+            tuple(CONDITIONS.values()),
+            SCALE,
+        ),
+    ),
+    (FOLDER / "expected.md").read_text(encoding="utf-8"),
+)
