@@ -57,8 +57,8 @@ def measure(world: WorldRecord) -> dict[str, Any]:
 
     Returns:
         "food", "water" and "children": mean numbers that founders ate, drank and had. "alive": mean number of agents
-        alive. "slope": slope of founders' relative intake of food on the gene; "children slope": that of their number
-        of children. "intake": mean intake of food in each range of `BINS`. A slope of intake for each neutral gene.
+        alive. "slope": slope of founders' relative intake of food on the gene; "children slope": the same for their
+        number of children. "intake": mean intake of food in each range of `BINS`. A slope of intake for each neutral gene.
     """
     founders = world.agents.filter(pl.col("parent_id").is_null())
     food, water, children = (
@@ -81,12 +81,12 @@ def measure(world: WorldRecord) -> dict[str, Any]:
 
 
 def slopes(rows: Sequence[Mapping[str, Any]], condition: str, key: str = "slope") -> dict[int, float]:
-    """The slopes in the worlds of a condition, by seed, where they are known."""
+    """The known slopes in the worlds of a condition, with the seeds as keys."""
     return {row["seed"]: row[key] for row in rows if row["condition"] == condition and row[key] is not None}
 
 
 def gains(rows: Sequence[Mapping[str, Any]], key: str = "slope") -> list[float]:
-    """By how much the slope is larger where food needs water, for each pair of worlds of equal seeds."""
+    """By how much the slope is larger if food needs water, for each pair of worlds of equal seeds."""
     gated, free = slopes(rows, GATED, key), slopes(rows, FREE, key)
     return [gated[seed] - free[seed] for seed in gated if seed in free]
 
@@ -104,14 +104,14 @@ def named_tests(rows: Sequence[Mapping[str, Any]], key: str = "slope") -> tuple[
     both = sum(row["died out"] for row in rows if row["seed"] in pairs)
     return (
         mean_test(
-            "liking water is fit where food needs it: slope of intake on the gene",
+            "liking water is fit if food needs it: slope of intake on the gene",
             list(slopes(rows, GATED, key).values()),
             len(gated),
             extinct,
             above=True,
         ),
         mean_test(
-            "it is fit because food needs water: that slope less the one where food needs nothing",
+            "it is fit because food needs water: that slope less the one if food needs nothing",
             gains(rows, key),
             len(pairs),
             both,
@@ -197,7 +197,7 @@ def draw_intake(question: str, rows: Sequence[Mapping[str, Any]]) -> NamedFigure
             axes.plot(middle, bounds[:, 0], "o-", color=color, label=condition)
             axes.vlines(middle, bounds[:, 1], bounds[:, 2], color=color, linewidth=2)
         axes.legend(frameon=False)
-        axes.set_xlabel("liking for water (weight of water; that of food is 1)")
+        axes.set_xlabel("weight of water (the weight of food is 1)")
         axes.set_ylabel("founders' relative intake of food")
     caption = "A pale line for each world; means over worlds, from five on with 95 % intervals."
     return NamedFigure(NAME, question, figure, caption)
@@ -207,7 +207,7 @@ STUDY = Study(
     NAME,
     "Optimal reward",
     "Singh et al. (2010), 10.1109/TAMD.2010.2051031: the best reward for a learner also pays for what is only a means "
-    "to its goal. Is a liking for water fit where food needs water?",
+    "to its goal. Is a liking for water fit if food needs water?",
     (
         Item(
             NAME,

@@ -105,7 +105,7 @@ def measure(world: WorldRecord) -> dict[str, Any]:
 
 
 def changes(rows: Sequence[Mapping[str, Any]], condition: str) -> dict[int, float]:
-    """The changes of the share of reducers in the worlds of a condition, by seed."""
+    """The changes of the share of reducers in the worlds of a condition, with the seeds as keys."""
     return {row["seed"]: row["change"] for row in rows if row["condition"] == condition}
 
 

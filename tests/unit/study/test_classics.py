@@ -16,7 +16,8 @@ from hedon.statistic import mean_interval
 from hedon_studies.founder import fitness_slope
 from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, draw_slopes, named_test
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
-from hedon_studies.optimal_reward.study import FREE, GATED, draw_intake, named_tests
+from hedon_studies.optimal_reward import study as optimal
+from hedon_studies.optimal_reward.study import FREE, GATED, draw_intake
 from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, verdict_table
 from hedon_studies.two_needs import study as needs
 from hedon_studies.two_needs.study import ADDITIVE, ONE, TWO, draw_changes
@@ -117,20 +118,44 @@ def water_rows(gated: float, free: float, seeds: int = WORLDS) -> list[dict]:
 
 
 def test_liking_a_means_is_fit_only_if_it_is_fitter_than_where_it_is_useless() -> None:
-    assert answers(*named_tests(water_rows(0.5, 0.0))) == [YES, YES]
-    assert answers(*named_tests(water_rows(0.5, 0.5))) == [YES, OPEN]
-    assert answers(*named_tests(water_rows(0.0, 0.5))) == [OPEN, NO]
-    assert answers(*named_tests(water_rows(0.5, 0.0, seeds=WORLDS - 1))) == [OPEN, OPEN]
+    assert answers(*optimal.named_tests(water_rows(0.5, 0.0))) == [YES, YES]
+    assert answers(*optimal.named_tests(water_rows(0.5, 0.5))) == [YES, OPEN]
+    assert answers(*optimal.named_tests(water_rows(0.0, 0.5))) == [OPEN, NO]
+    assert answers(*optimal.named_tests(water_rows(0.5, 0.0, seeds=WORLDS - 1))) == [OPEN, OPEN]
 
 
 def test_a_pair_without_one_of_its_worlds_has_no_difference() -> None:
     rows = water_rows(0.5, 0.0)
-    slope, difference = named_tests(rows[:-1])
+    slope, difference = optimal.named_tests(rows[:-1])
     assert (slope.worlds, difference.worlds, difference.values) == (WORLDS, WORLDS - 1, WORLDS - 1)
     starved = [row | {"slope": None, "food": 0.0, "died out": True} if row["seed"] == 0 else row for row in rows]
-    slope, difference = named_tests(starved)
+    slope, difference = optimal.named_tests(starved)
     assert (slope.values, slope.extinct, difference.values, difference.extinct) == (WORLDS - 1, 1, WORLDS - 1, 2)
     assert svg_bytes(draw_intake("Is it fit to like what is only a means?", starved).figure)
+
+
+def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
+    page = " ".join((RESULTS / "optimal-reward.md").read_text(encoding="utf-8").split())
+    worlds = pl.read_csv(RESULTS / "optimal-reward" / "worlds.csv")
+    assert (worlds.height, worlds["died out"].sum()) == (60, 0)
+    rows = worlds.to_dicts()
+    slope, difference = optimal.named_tests(rows)
+    assert answers(slope, difference) == [YES, YES]
+    assert max(row["p (Holm)"] for row in verdict_table("made_up", (slope, difference)).rows.to_dicts()) < 0.0001
+    assert f"rises by {slope.effect:.2f} ({slope.low:.2f} … {slope.high:.2f})" in page
+    assert f"by {difference.effect:.2f} ({difference.low:.2f} … {difference.high:.2f}) less" in page
+    neutral = [name for name in worlds.columns if name.startswith("neutral_")]
+    outside = [row["test"] for row in optimal.control_rows(rows, neutral) if row["low"] > 0 or row["high"] < 0]
+    assert (len(neutral), outside) == (16, ["difference"])
+    for row in pl.read_csv(RESULTS / "optimal-reward" / "conditions.csv").iter_rows(named=True):
+        intervals = []
+        for name, key in (("slope", "slope"), ("children slope", "children slope")):
+            bounds = mean_interval(list(optimal.slopes(rows, row["condition"], key).values()))
+            assert row[name] == pytest.approx(bounds.mean)
+            intervals.append(f"{bounds.mean:.2f} ({bounds.low:.2f} … {bounds.high:.2f})")
+        intake = list(row.values())[-4:]
+        eaten = ", ".join(f"{value:.1f}" for value in intake)
+        assert f"| {row['condition']} | {row['alive']:.0f} | {' | '.join(intervals)} | {eaten} |" in page
 
 
 def need_rows(two: float, one: float, additive: float, seeds: int = WORLDS) -> list[dict]:
