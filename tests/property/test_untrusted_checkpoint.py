@@ -224,6 +224,6 @@ def passes(saved, data: st.DataObject) -> bool:
     with contextlib.suppress(ValueError, EngineError):
         simulation.engine.restore(0, spoiled)
         taken = True
-        simulation.run(40)  # to the end of the window and past its learning
+        simulation.run(48)  # from step 81 or later past the learning at step 128
     simulation.worlds[0].observations()
     return taken
