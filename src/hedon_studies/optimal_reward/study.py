@@ -58,7 +58,8 @@ def measure(world: WorldRecord) -> dict[str, Any]:
     Returns:
         "food", "water" and "children": mean numbers that founders ate, drank and had. "alive": mean number of agents
         alive. "slope": slope of founders' relative intake of food on the gene; "children slope": the same for their
-        number of children. "intake": mean intake of food in each range of `BINS`. A slope of intake for each neutral gene.
+        number of children. "intake": mean intake of food in each range of `BINS`. Also a slope of intake for each
+        neutral gene.
     """
     founders = world.agents.filter(pl.col("parent_id").is_null())
     food, water, children = (

@@ -133,6 +133,17 @@ def test_the_page_compares_the_early_slopes_of_two_learners() -> None:
     assert "the baseline's slope on sight is three times its slope on food" in page
 
 
+def test_the_page_counts_the_contests_that_each_kind_of_reward_wins() -> None:
+    page = " ".join((RESULTS / "learner.md").read_text(encoding="utf-8").split())
+    worlds = pl.read_csv(RESULTS / "learner" / "swap" / evolution.WORLDS).sort("pair")
+    fast, slow = (worlds.filter(treatment=name)["share"] for name in ("fast", "slow"))
+    assert f"it is above 0 in {(fast > slow).sum()} of {len(fast)} pairs" in page
+    wins, losses = (fast > 0.5).sum(), (slow > 0.5).sum()
+    assert (
+        f"the majority in {wins} of {len(fast)} contests with the fast learner, and in {losses} with the slow" in page
+    )
+
+
 def test_the_paper_has_the_effects_of_each_part() -> None:
     paper = " ".join((RESULTS.parent / "paper" / "paper.md").read_text(encoding="utf-8").split())
     direction, *_ = committed("evolution").rows.iter_rows(named=True)
