@@ -1,4 +1,4 @@
-"""Is a liking for water fit if water is only a means to eat? README.md has the claim, the rule and the deviations."""
+"""Is a liking for water fit if water is only a means to food? README.md has the claim, the rule and the deviations."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
@@ -159,7 +159,7 @@ def condition_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """Makes the figure, and the tables of the answer, of conditions, of neutral genes and of worlds."""
-    question = "Is it fit to like what is only a means?"
+    question = "Is a liking for water fit if water is only a means to food?"
     rows = [
         {"condition": name} | measure(world)
         for name, condition in CONDITIONS.items()

@@ -131,7 +131,7 @@ def test_a_pair_without_one_of_its_worlds_has_no_difference() -> None:
     starved = [row | {"slope": None, "food": 0.0, "died out": True} if row["seed"] == 0 else row for row in rows]
     slope, difference = optimal.named_tests(starved)
     assert (slope.values, slope.extinct, difference.values, difference.extinct) == (WORLDS - 1, 1, WORLDS - 1, 2)
-    assert svg_bytes(draw_intake("Is it fit to like what is only a means?", starved).figure)
+    assert svg_bytes(draw_intake("Is a liking for water fit if water is only a means to food?", starved).figure)
 
 
 def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
@@ -142,8 +142,18 @@ def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
     slope, difference = optimal.named_tests(rows)
     assert answers(slope, difference) == [YES, YES]
     assert max(row["p (Holm)"] for row in verdict_table("made_up", (slope, difference)).rows.to_dicts()) < 0.0001
-    assert f"rises by {slope.effect:.2f} ({slope.low:.2f} … {slope.high:.2f})" in page
-    assert f"by {difference.effect:.2f} ({difference.low:.2f} … {difference.high:.2f}) less" in page
+    assert f"slope of relative intake of food is {slope.effect:.2f} ({slope.low:.2f} … {slope.high:.2f})" in page
+    assert f"smaller by {difference.effect:.2f} ({difference.low:.2f} … {difference.high:.2f})" in page
+    pieces = worlds.with_columns(pl.col("slope") * pl.col("food")).to_dicts()
+    of_children = mean_interval(optimal.gains(rows, "children slope"))
+    assert f"two cases is {of_children.mean:.2f} ({of_children.low:.2f} … {of_children.high:.2f}; not" in page
+    for values, text in (
+        (list(optimal.slopes(pieces, GATED).values()), "worth {} if food needs water"),
+        (list(optimal.slopes(pieces, FREE).values()), "and {} if not"),
+        (optimal.gains(pieces), "if not, {} more"),
+    ):
+        bounds = mean_interval(values)
+        assert text.format(f"{bounds.mean:.1f} ({bounds.low:.1f} … {bounds.high:.1f})") in page
     neutral = [name for name in worlds.columns if name.startswith("neutral_")]
     outside = [row["test"] for row in optimal.control_rows(rows, neutral) if row["low"] > 0 or row["high"] < 0]
     assert (len(neutral), outside) == (16, ["difference"])
