@@ -55,11 +55,13 @@ STORE = (
     "store.water.set_point.initial_sd=0",
 )
 """A second need: without water, agents die as they do without energy."""
-TWO, ONE, ADDITIVE = "two needs", "one need", "two needs, additive drive"
+TWO, ONE, ADDITIVE, PAID = "two needs", "one need", "two needs, additive drive", "two needs, larger pay"
 NEEDS = {
     TWO: STORE,
     ONE: ("food.water.gives={energy=1}",),
     ADDITIVE: (*STORE, "reward.drive_exponent=1", "reward.drive_root=1"),
+    # Times the square root of 2: a meal then pays 1 if both stores lack as much, as with an additive drive.
+    PAID: (*STORE, "reward.pay.drive_reduction.coef=28.284"),
 }
 REDUCERS = {GENE: 1.0, "w_normal": 0.0, "w_water": 0.0, "w_action": 0.0}
 """Genes of agents that are paid for reducing the drive."""
@@ -109,31 +111,36 @@ def changes(rows: Sequence[Mapping[str, Any]], condition: str) -> dict[int, floa
     return {row["seed"]: row["change"] for row in rows if row["condition"] == condition}
 
 
+def pair_test(name: str, rows: Sequence[Mapping[str, Any]], first: str, second: str) -> Test:
+    """Tests whether the share of reducers grows more in one condition than in another, in pairs of equal seeds.
+
+    Args:
+        name: Name of the claim.
+        rows: Rows of worlds, each with "condition", "seed", "died out" and "change".
+        first: Condition in which it should grow more.
+        second: The other condition.
+    """
+    more, less = changes(rows, first), changes(rows, second)
+    pairs = sorted(more.keys() & less.keys())
+    extinct = sum(row["died out"] for row in rows if row["seed"] in pairs and row["condition"] in (first, second))
+    return mean_test(name, [more[seed] - less[seed] for seed in pairs], len(pairs), extinct, above=True)
+
+
 def named_tests(rows: Sequence[Mapping[str, Any]]) -> list[Test]:
-    """The three tests, from the rows of all worlds, each with "condition", "seed", "died out" and "change"."""
+    """The three tests, from the rows of all worlds."""
     two = changes(rows, TWO)
-
-    def died_out(seeds: set[int], *conditions: str) -> int:
-        return sum(row["died out"] for row in rows if row["seed"] in seeds and row["condition"] in conditions)
-
-    tests = [
-        mean_test(
-            "with two needs, drive reduction is fitter: change of its share",
-            list(two.values()),
-            len(two),
-            died_out(set(two), TWO),
-            above=True,
-        )
+    extinct = sum(row["died out"] for row in rows if row["condition"] == TWO)
+    growth = "with two needs, drive reduction is fitter: change of its share"
+    return [
+        mean_test(growth, list(two.values()), len(two), extinct, above=True),
+        pair_test("its share grows more than with one need: difference of changes", rows, TWO, ONE),
+        pair_test("its share grows more than with an additive drive: difference of changes", rows, TWO, ADDITIVE),
     ]
-    for name, other in (("than with one need", ONE), ("than with an additive drive", ADDITIVE)):
-        found = changes(rows, other)
-        pairs = two.keys() & found.keys()
-        values = [two[seed] - found[seed] for seed in sorted(pairs)]
-        extinct = died_out(set(pairs), TWO, other)
-        tests.append(
-            mean_test(f"its share grows more {name}: difference of changes", values, len(pairs), extinct, above=True)
-        )
-    return tests
+
+
+def follow_up(rows: Sequence[Mapping[str, Any]]) -> Test:
+    """The test of the follow-up: whether drives are fitter if they pay more."""
+    return pair_test("larger pay makes drive reduction fitter: difference of changes", rows, PAID, TWO)
 
 
 def condition_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -168,6 +175,7 @@ def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     yield draw_changes(question, rows)
     note = missing_note(inputs, tuple(CONDITIONS.values()), SCALE)
     yield verdict_table("two_needs_verdict", named_tests(rows), note)
+    yield verdict_table("two_needs_follow_up_verdict", (follow_up(rows),), note)
     yield make_table("two_needs_condition", "Each condition: means over worlds", condition_rows(rows))
     yield make_table("two_needs_world", "Each world: how the share of reducers changed", rows, shown=False)
 
@@ -189,7 +197,7 @@ def draw_changes(question: str, rows: Sequence[Mapping[str, Any]]) -> NamedFigur
             axes.plot([place + 0.15] * 2, bounds, color=hedon.figure.BLUE, linewidth=2)
             if interval.mean is not None:
                 axes.plot(place + 0.15, interval.mean, "o", color=hedon.figure.BLUE, markersize=6)
-        axes.set_xticks(range(len(CONDITIONS)), list(CONDITIONS))
+        axes.set_xticks(range(len(CONDITIONS)), [name.replace(", ", ",\n") for name in CONDITIONS])
         axes.set_ylabel("change of the share of reducers")
     caption = "A dot for each world, a cross if it died out; means over worlds, from five on with 95 % intervals."
     return NamedFigure(NAME, question, figure, caption)

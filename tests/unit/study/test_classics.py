@@ -20,7 +20,7 @@ from hedon_studies.optimal_reward import study as optimal
 from hedon_studies.optimal_reward.study import FREE, GATED, draw_intake
 from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, verdict_table
 from hedon_studies.two_needs import study as needs
-from hedon_studies.two_needs.study import ADDITIVE, ONE, TWO, draw_changes
+from hedon_studies.two_needs.study import ADDITIVE, ONE, PAID, TWO, draw_changes
 
 RESULTS = Path(__file__).parents[3] / "docs" / "results"
 
@@ -188,6 +188,9 @@ def test_drive_reduction_must_be_fitter_with_two_needs_than_with_one() -> None:
 def test_worlds_without_a_partner_count_in_the_first_test_only() -> None:
     rows = need_rows(0.2, 0.0, 0.2)
     rows = [row | {"died out": row["seed"] == 1} for row in rows if (row["seed"], row["condition"]) != (0, ONE)]
+    assert needs.follow_up(rows).worlds == 0
+    paid = [{"condition": PAID, "seed": seed, "died out": False, "change": 0.5} for seed in range(WORLDS)]
+    assert answers(needs.follow_up(rows + paid)) == [YES]
     first, second, third = needs.named_tests(rows)
     assert [test.worlds for test in (first, second, third)] == [WORLDS, WORLDS - 1, WORLDS]
     assert [test.extinct for test in (first, second, third)] == [1, 2, 2]
@@ -285,7 +288,7 @@ def test_optimal_reward_runs_from_its_settings_to_its_page(tmp_path: Path) -> No
 def test_two_needs_runs_from_its_settings_to_its_page(tmp_path: Path) -> None:
     tables = run_quick(tmp_path, "two-needs")
     rows = {row["condition"]: row for row in tables["two_needs_world"]}
-    assert list(rows) == [TWO, ONE, ADDITIVE]
+    assert list(rows) == list(needs.CONDITIONS)
     for row in rows.values():
         assert row["alive"] > 0
         assert min(row[f"{group} {kind}"] for group in ("reducers", "eaters") for kind in ("food", "water")) > 0
