@@ -91,6 +91,8 @@ def test_the_start_is_recorded_where_the_table_says(run):
         "learner/behavior/runs.csv",
         "lifespan/runs.csv",
         "optimal-reward/runs.csv",
+        "two-needs/runs.csv",
+        "two-needs/follow-up.csv",
         "full-six/worlds.csv",
     ],
 )

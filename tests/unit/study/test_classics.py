@@ -217,6 +217,39 @@ def test_the_page_on_lifespans_has_the_numbers_of_its_tables() -> None:
         assert f"| \N{MULTIPLICATION SIGN} {row['hazard']:g} | {numbers} |" in page
 
 
+def number(value: float, digits: int = 3) -> str:
+    return f"{value:.{digits}f}".replace("-", "\N{MINUS SIGN}")
+
+
+def test_the_page_on_two_needs_has_the_numbers_of_its_tables() -> None:
+    page = " ".join((RESULTS / "two-needs.md").read_text(encoding="utf-8").split())
+    worlds = pl.read_csv(RESULTS / "two-needs" / "worlds.csv")
+    assert (worlds.height, worlds["died out"].sum()) == (120, 0)
+    rows = worlds.to_dicts()
+    tests = needs.named_tests(rows)
+    table = verdict_table("made_up", tests).rows.to_dicts()
+    assert [row["answer"] for row in table] == [OPEN, OPEN, NO]
+    for row in table:
+        bounds = f"{number(row['effect'])} ({number(row['low'])} … {number(row['high'])}; p {row['p (Holm)']:.2f})"
+        assert bounds in page
+    found = needs.follow_up(rows)
+    assert answers(found) == [OPEN]
+    assert f"{number(found.effect)} ({number(found.low)} … {number(found.high)}; p {found.p:.2f}) more" in page
+    unplanned = needs.pair_test("additive, larger pay", rows, ADDITIVE, PAID)
+    assert f"by {number(unplanned.effect)} ({number(unplanned.low)} … {number(unplanned.high)}) more than" in page
+    assert f"from {number(worlds['change'].min(), 2)} to {number(worlds['change'].max(), 2)}" in page
+    for row in pl.read_csv(RESULTS / "two-needs" / "conditions.csv").iter_rows(named=True):
+        bounds = mean_interval(list(needs.changes(rows, row["condition"]).values()))
+        assert row["change"] == pytest.approx(bounds.mean)
+        change = f"{number(bounds.mean)} ({number(bounds.low)} … {number(bounds.high)})"
+        eaten = [
+            ", ".join(f"{row[f'{group} {kind}']:.1f}" for kind in ("food", "water")) for group in ("reducers", "eaters")
+        ]
+        assert f"| {row['condition']} | {row['alive']:.0f} | {change} | {' | '.join(eaten)} |" in page
+        for kind in ("food", "water"):
+            assert row[f"reducers {kind}"] < row[f"eaters {kind}"]
+
+
 def test_more_tests_make_the_rule_stricter() -> None:
     found = count_test("clusters", 6, WORLDS, 0, 1 / 17, above=True)
     assert found.effect == pytest.approx(6 / WORLDS - 1 / 17)
