@@ -79,6 +79,24 @@ def make_mixed(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     note = missing_note(inputs, tuple(MIXTURES.values()), Scale(SEEDS, MIXED["steps"]))
     yield verdict_table("mating_verdict", invasion_tests(lines), note, NAMED)
     yield from hedon.assay.frequency_tables(frequency)
+    title = "Each world: the share of foragers at the start and at the end"
+    yield make_table("mating_share_world", title, world_rows(lines), shown=False)
+
+
+def world_rows(lines: Mapping[float, Sequence[Lines]]) -> list[dict[str, Any]]:
+    """A row for each world, from the worlds of each share of foragers."""
+    return [
+        {
+            "foragers": share,
+            "seed": world.seed,
+            "died out": world.ended,
+            "start": float(world.share[0]),
+            "end": float(world.share[-1]),
+            "generations": float(world.generation[-1]),
+        }
+        for share, worlds in lines.items()
+        for world in worlds
+    ]
 
 
 def is_clustered(world: WorldRecord) -> bool | None:

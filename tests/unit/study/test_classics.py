@@ -331,4 +331,5 @@ def test_mating_strategies_runs_from_its_settings_to_its_page(tmp_path: Path) ->
     tables = run_quick(tmp_path, "mating-strategies")
     assert [row["share at the start"] for row in tables["frequency_share"]] == [0.05, 0.25, 0.5, 0.75, 0.95]
     assert [row["worlds"] for row in tables["frequency_share"]] == [1] * 5
+    assert [row["foragers"] for row in tables["mating_share_world"]] == [0.05, 0.25, 0.5, 0.75, 0.95]
     assert len(tables["mating_world"]) == 1
