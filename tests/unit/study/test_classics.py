@@ -245,9 +245,18 @@ def test_the_page_on_two_needs_has_the_numbers_of_its_tables() -> None:
         eaten = [
             ", ".join(f"{row[f'{group} {kind}']:.1f}" for kind in ("food", "water")) for group in ("reducers", "eaters")
         ]
-        assert f"| {row['condition']} | {row['alive']:.0f} | {change} | {' | '.join(eaten)} |" in page
+        assert (
+            f"| {row['condition']} | {row['alive']:.0f} | {row['generations']:.1f} | {change} | {' | '.join(eaten)} |"
+            in page
+        )
+        worlds_of = worlds.filter(condition=row["condition"])
         for kind in ("food", "water"):
-            assert row[f"reducers {kind}"] < row[f"eaters {kind}"]
+            less = mean_interval((worlds_of[f"reducers {kind}"] - worlds_of[f"eaters {kind}"]).to_list())
+            assert less.mean < 0
+            if (row["condition"], kind) == (ADDITIVE, "food"):
+                assert f"{number(less.mean, 2)} ({number(less.low, 2)} … {number(less.high, 2)})" in page
+            else:
+                assert less.high < 0
 
 
 def test_more_tests_make_the_rule_stricter() -> None:
