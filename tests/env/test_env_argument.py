@@ -292,3 +292,20 @@ def test_other_arguments_of_pettingzoo_are_named():
     for says, call in wrong.items():
         with pytest.raises(ArgumentError, match=says):
             call()
+
+
+@pytest.mark.parametrize(
+    ("preset", "arguments", "threads"),
+    [
+        ("baseline", {}, 1),
+        ("baseline", {"worlds": 2}, 2),
+        ("baseline", {"worlds": 32}, 4),
+        ("small", {}, 1),
+        ("predator", {"species": "prey"}, 0),
+        ("baseline", {"threads": 3}, 3),
+    ],
+)
+def test_worlds_get_as_many_threads_as_speed_them_up(monkeypatch, preset, arguments, threads):
+    """In `predator`, the species that is not driven learns in the engine, which all processors speed up."""
+    monkeypatch.setattr("hedon.env.argument.usable_cpus", lambda: 4)
+    assert make(preset, **arguments).simulation._threads == threads

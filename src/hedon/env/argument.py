@@ -14,10 +14,13 @@ from hedon.error import ArgumentError
 from hedon.experiment.argument import integer, seed_list
 from hedon.experiment.rule import pinned, rules
 from hedon.experiment.simulation import MAX_WORLD_SEED, Simulation
+from hedon.record.provenance import usable_cpus
 from hedon.text import brief
 
 _DRAWN = 2**32
 """Random seeds are below this number."""
+SLOTS_PER_THREAD = 150
+"""Slots that a thread must have in a step without learning, or it saves less time than threads wait for one another."""
 RESET_MASK = "reset_mask"
 """Option of `reset` that Gymnasium's vector environments share."""
 
@@ -130,6 +133,14 @@ def recordable(
 ) -> Simulation:
     """Creates an environment's worlds; if they are recorded, their config is pinned to its rules.
 
+    Args:
+        config: Settings of the worlds, in which the species that the caller drives have the policy `external`.
+        seeds: Seeds of the worlds.
+        threads: Number of threads; 0 to choose it by `thread_count`.
+        backend: Instruction set or device, as in `Simulation`.
+        record: Folder of the records; None for none.
+        frames: World steps between two frames; 0 for none.
+
     Raises:
         ArgumentError: `frames` is given without `record`.
         RuleError: A rule cannot be used.
@@ -138,4 +149,18 @@ def recordable(
     if record is None and frames:
         raise ArgumentError(f"frames = {brief(repr(frames))}: give record, the folder for them, too")
     texts = tuple(rule.source for rule in config_rules)
-    return Simulation(pinned(config, config_rules) if config_rules else config, seeds, threads, backend, texts)
+    pinned_config = pinned(config, config_rules) if config_rules else config
+    return Simulation(pinned_config, seeds, threads or thread_count(config, len(seeds)), backend, texts)
+
+
+def thread_count(config: Config, worlds: int) -> int:
+    """The number of threads that is fastest for worlds driven by a program; 0 for all processors.
+
+    Args:
+        config: Settings of the worlds.
+        worlds: Number of worlds.
+    """
+    if any(species.learning.policy == "ppo" for species in config.species.values()):
+        return 0
+    slots = worlds * sum(species.population.capacity for species in config.species.values())
+    return max(1, min(usable_cpus(), slots // SLOTS_PER_THREAD))

@@ -42,7 +42,7 @@ class VectorEnv(Cloned):
         repeat: World steps per environment step.
         max_steps: World steps after which agents are truncated.
         render_mode: What `render` produces.
-        threads: As in `hedon.Simulation`.
+        threads: As in `make`.
         backend: As in `hedon.Simulation`.
         record: Folder for the records of the worlds.
         frames: World steps between two recorded frames.
