@@ -29,6 +29,8 @@ WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
     "a seed as a text": (lambda w: w.reset(seed="1"), r"seed = '1': must be a whole number"),
     "half a seed in a list": (lambda w: w.reset(seed=[0.5]), r"seeds = 0\.5: must be a whole number"),
     "a seed too many": (lambda w: w.reset(seed=[1, 2]), "there must be 1, one per world, not 2"),
+    "no number of threads": (lambda w: hedon.make(CONFIG, threads=None), "threads = None: must be a whole number"),
+    "a truth as threads": (lambda w: hedon.make(CONFIG, threads=False), "threads = False: must be a whole number"),
     "an unknown option": (
         lambda w: w.reset(options={"mask": [True]}),
         "options: there is no 'mask'; there is 'reset_m",
@@ -294,18 +296,23 @@ def test_other_arguments_of_pettingzoo_are_named():
             call()
 
 
+FIXED = ["species.predator.learning.policy=fixed", "species.predator.birth.network=initial"]
+
+
 @pytest.mark.parametrize(
     ("preset", "arguments", "threads"),
     [
         ("baseline", {}, 1),
         ("baseline", {"worlds": 2}, 2),
         ("baseline", {"worlds": 32}, 4),
-        ("small", {}, 1),
+        ("predator", {}, 3),
         ("predator", {"species": "prey"}, 0),
+        ("predator", {"species": "prey", "overrides": FIXED}, 0),
+        ("predator", {"species": "prey", "overrides": ["species.predator.learning.policy=random"]}, 3),
         ("baseline", {"threads": 3}, 3),
     ],
 )
 def test_worlds_get_as_many_threads_as_speed_them_up(monkeypatch, preset, arguments, threads):
-    """In `predator`, the species that is not driven learns in the engine, which all processors speed up."""
+    """All processors speed up networks that the engine computes, as for the other species of `predator`."""
     monkeypatch.setattr("hedon.env.argument.usable_cpus", lambda: 4)
     assert make(preset, **arguments).simulation._threads == threads

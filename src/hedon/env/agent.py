@@ -78,7 +78,7 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         others: Policy of the other agents of the species, from observations (slots, entries) to actions (slots, 2);
             None to keep their motors in the middle of their range.
         render_mode: What `render` produces.
-        threads: As in `make`.
+        threads: Number of threads; a world of usual size is fastest with one.
         record: Folder for the records, one run for each world that starts; call `close` at the end.
         frames: World steps between two recorded frames; 0 for none.
         overrides: Settings that replace those of the preset or file.
@@ -100,7 +100,7 @@ class AgentEnv(Copied, gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         max_steps: int = 0,
         others: Policy | None = None,
         render_mode: str | None = None,
-        threads: int = 0,
+        threads: int = 1,
         record: Path | str | None = None,
         frames: int = 0,
         overrides: Iterable[str] = (),

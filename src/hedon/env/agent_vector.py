@@ -32,8 +32,8 @@ class AgentVectorEnv(WorldsVectorEnv):
         max_steps: World steps after which the episode is truncated.
         others: Policy of the other agents of the species, from observations (worlds · slots, entries) to actions.
         render_mode: What `render` produces.
-        threads: Number of threads; 0 for one per 150 slots, or for all processors if some agents learn in the engine.
-            Changes no result.
+        threads: Number of threads; 0 for one per 150 slots, or for all processors if the engine computes networks of
+            some agents. Changes no result.
         record: Folder for the records, one run for each world that starts; call `close` at the end.
         frames: World steps between two recorded frames; 0 for none.
         overrides: Settings that replace those of the preset or file.

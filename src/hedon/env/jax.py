@@ -73,8 +73,8 @@ class JaxEnv(Copied):
         actions: Meaning of the numbers in an action.
         repeat: World steps per environment step.
         max_steps: Value in `default_params`: steps after which a world restarts; 0 for no limit.
-        threads: Number of threads; 0 for one per 150 slots, or for all processors if some agents learn in the engine.
-            Changes no result.
+        threads: Number of threads; 0 for one per 150 slots, or for all processors if the engine computes networks of
+            some agents. Changes no result.
         backend: As in `hedon.Simulation`.
         record: Folder for the records, one run for worlds that start together; call `close` at the end.
         frames: World steps between two recorded frames; 0 for none.

@@ -41,8 +41,8 @@ def make(
         repeat: World steps per environment step, all with the same actions.
         max_steps: World steps after which agents are truncated; 0 for no limit. The world continues until it is reset.
         render_mode: `rgb_array` for pictures from `render`; `human` for a window that shows world 0, with pygame.
-        threads: Number of threads; 0 for one per 150 slots, or for all processors if some agents learn in the engine.
-            Changes no result.
+        threads: Number of threads; 0 for one per 150 slots, or for all processors if the engine computes networks of
+            some agents. Changes no result.
         backend: As in `hedon.Simulation`.
         record: Folder for the files that `hedon run` would write, which reports, analyses and the page can read; None
             for no records. Each restart of worlds begins a new run, in a folder with a number after its name. Call

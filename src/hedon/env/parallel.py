@@ -43,7 +43,7 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         max_steps: Steps after which all agents are truncated; 0 for no limit except extinction.
         slots: Whether slots stand for agents.
         render_mode: What `render` produces.
-        threads: As in `make`.
+        threads: Number of threads; a world of usual size is fastest with one.
         record: Folder for the records, one run for each world that starts; call `close` at the end.
         frames: World steps between two recorded frames; 0 for none.
         overrides: Settings that replace those of the preset or file.
@@ -63,7 +63,7 @@ class ParallelEnv(Copied, pettingzoo.ParallelEnv[str, Any, Any]):
         max_steps: int = 0,
         slots: bool = False,
         render_mode: str | None = None,
-        threads: int = 0,
+        threads: int = 1,
         record: Path | str | None = None,
         frames: int = 0,
         overrides: Iterable[str] = (),
