@@ -27,11 +27,23 @@ def spread_gene(config: Config, low: float, high: float, fixed: Mapping[str, flo
 
 
 def fitness_slope(genes: NDArray[np.floating], fitness: NDArray[np.floating]) -> float | None:
-    """The slope of relative fitness on a gene, by least squares; None if no founder has any fitness.
+    """The slope of relative fitness on a gene, by least squares.
 
     Args:
         genes: Gene of each founder, shape (founders,).
         fitness: Its fitness, such as its number of children, shape (founders,).
+
+    Returns:
+        None if no founder has any fitness, or if the fitness of some is not known (NaN), as in records that are cut.
     """
     mean = fitness.mean()
     return float(np.polyfit(genes, fitness / mean, 1)[0]) if mean > 0 else None
+
+
+def known_mean(values: NDArray[np.floating]) -> float | None:
+    """The mean of some founders' numbers; None without founders, or if a number is not known (NaN).
+
+    Args:
+        values: Number of each founder, shape (founders,).
+    """
+    return float(values.mean()) if len(values) and np.isfinite(values).all() else None

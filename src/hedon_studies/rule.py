@@ -31,7 +31,7 @@ class Test:
         name: Name of the claim.
         worlds: Number of worlds, or of pairs of worlds.
         values: Number of these with a value.
-        extinct: Number of worlds that died out, which are included.
+        extinct: Number of worlds that died out. They are included, if they have a value.
         above: Whether the claim holds above 0 instead of below.
         effect: The measured effect.
         low, high: Bounds of its 95 % interval.
@@ -74,6 +74,44 @@ def mean_test(name: str, values: ArrayLike, worlds: int, extinct: int, *, above:
     mean, low, high = (np.nan if bound is None else bound for bound in (interval.mean, interval.low, interval.high))
     p = float(np.asarray(stats.ttest_1samp(sample, 0.0))[1])
     return Test(name, worlds, len(sample), extinct, above, mean, low, high, p)
+
+
+def by_seed(rows: Sequence[Mapping[str, Any]], condition: str, key: str) -> dict[int, float]:
+    """A measure of the worlds of one condition, with the seeds as keys; worlds in which it is not known are left out.
+
+    Args:
+        rows: Rows of worlds, each with "condition", "seed" and the measure.
+        condition: Name of the condition.
+        key: Name of the measure.
+    """
+    return {row["seed"]: row[key] for row in rows if row["condition"] == condition and row[key] is not None}
+
+
+def pair_differences(rows: Sequence[Mapping[str, Any]], pair: tuple[str, str], key: str) -> list[float]:
+    """By how much a measure is larger in one condition than in another, for each pair of worlds of equal seeds.
+
+    Args:
+        rows: As in `by_seed`.
+        pair: The two conditions.
+        key: Name of the measure.
+    """
+    first, second = (by_seed(rows, condition, key) for condition in pair)
+    return [first[seed] - second[seed] for seed in sorted(first.keys() & second.keys())]
+
+
+def pair_test(name: str, rows: Sequence[Mapping[str, Any]], pair: tuple[str, str], key: str) -> Test:
+    """Tests whether a measure is larger in one condition than in another, in pairs of worlds of equal seeds.
+
+    Args:
+        name: Name of the claim.
+        rows: As in `by_seed`, with "died out" as well.
+        pair: The two conditions.
+        key: Name of the measure.
+    """
+    first, second = ({row["seed"]: row for row in rows if row["condition"] == condition} for condition in pair)
+    pairs = first.keys() & second.keys()
+    extinct = sum(found[seed]["died out"] for found in (first, second) for seed in pairs)
+    return mean_test(name, pair_differences(rows, pair, key), len(pairs), extinct, above=True)
 
 
 def count_test(name: str, count: int, worlds: int, extinct: int, chance: float, *, above: bool) -> Test:

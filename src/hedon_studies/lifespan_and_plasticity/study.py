@@ -1,5 +1,6 @@
 """Do shorter lives favor faster learning? README.md has the claim, the rule and the deviations."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import pairwise
@@ -14,7 +15,7 @@ from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive
 from hedon.figure import NamedFigure
 from hedon.statistic import mean_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
-from hedon_studies.founder import fitness_slope, spread_gene
+from hedon_studies.founder import fitness_slope, known_mean, spread_gene
 from hedon_studies.rule import Test, mean_test, verdict_table
 
 FOLDER = Path(__file__).parent
@@ -65,7 +66,7 @@ def measure(world: WorldRecord) -> dict[str, Any]:
         "unfinished": float((lifespans >= world.last_step).mean()),
         "alive": mean_alive(world.population),
         "slope": fitness_slope(genes, children),
-        "children": [float(relative[bins == i].mean()) for i in range(len(BINS) - 1)],
+        "children": [known_mean(relative[bins == i]) for i in range(len(BINS) - 1)],
         **{name: fitness_slope(founders[name].to_numpy(), children) for name in world.neutral_names},
     }
 
@@ -91,10 +92,10 @@ def trends(rows: Sequence[Mapping[str, Any]], key: str = "slope") -> list[float]
 
 def named_test(rows: Sequence[Mapping[str, Any]]) -> Test:
     """The test of the claim, from the rows of all worlds."""
-    values = trends(rows)
-    extinct = sum(row["died out"] for row in rows)
+    complete = [seed for seed, count in Counter(row["seed"] for row in rows).items() if count == len(HAZARDS)]
+    extinct = sum(row["died out"] for row in rows if row["seed"] in complete)
     name = "shorter lives, larger rates: change of the slope on the gene per doubling of the hazard"
-    return mean_test(name, values, len({row["seed"] for row in rows}), extinct, above=True)
+    return mean_test(name, trends(rows), len(complete), extinct, above=True)
 
 
 def control_rows(rows: Sequence[Mapping[str, Any]], neutral: Sequence[str]) -> list[dict[str, Any]]:
@@ -114,14 +115,16 @@ def hazard_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     for hazard in HAZARDS:
         worlds = [row for row in rows if row["hazard"] == hazard]
         if worlds:
-            bounds = mean_interval([row["slope"] for row in worlds if row["slope"] is not None])
-            means = {key: float(np.mean([row[key] for row in worlds])) for key in ("lifespan", "unfinished", "alive")}
-            children = np.nanmean([row["children"] for row in worlds], axis=0)
-            labels = [f"{low:g} to {high:g}" for low, high in pairwise(BINS)]
+            bounds = mean_interval(row["slope"] for row in worlds)
+            means = {key: mean_interval(row[key] for row in worlds).mean for key in ("lifespan", "unfinished", "alive")}
+            children = {
+                f"{low:g} to {high:g}": mean_interval(row["children"][i] for row in worlds).mean
+                for i, (low, high) in enumerate(pairwise(BINS))
+            }
             found.append(
                 {"hazard": hazard, "worlds": len(worlds), **means}
                 | {"slope": bounds.mean, "low": bounds.low, "high": bounds.high}
-                | dict(zip(labels, children.tolist(), strict=True))
+                | children
             )
     return found
 

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import polars as pl
 
+import hedon.assay
 import hedon.figure
 from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive
 from hedon.figure import NamedFigure
 from hedon.statistic import mean_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
-from hedon_studies.founder import fitness_slope, spread_gene
-from hedon_studies.rule import Test, mean_test, verdict_table
+from hedon_studies.founder import fitness_slope, known_mean, spread_gene
+from hedon_studies.rule import Test, by_seed, mean_test, pair_test, verdict_table
 
 FOLDER = Path(__file__).parent
 NAME = "optimal-reward"
@@ -53,43 +54,36 @@ CONDITIONS = {
 
 
 def measure(world: WorldRecord) -> dict[str, Any]:
-    """The measures of one world.
+    """The measures of one world; None where records were cut before the agents died.
 
     Returns:
-        "food", "water" and "children": mean numbers that founders ate, drank and had. "alive": mean number of agents
-        alive. "slope": slope of founders' relative intake of food on the gene; "children slope": the same for their
-        number of children. "intake": mean intake of food in each range of `BINS`. Also a slope of intake for each
-        neutral gene.
+        "food", "water" and "children": mean numbers that founders ate, drank and had. "unfinished": share of founders
+        alive at the end. "alive": mean number of agents alive. "slope": slope of founders' relative intake of food on
+        the gene; "rate slope" and "children slope": the same for their intake per step of life and for their number of
+        children. "intake": mean intake of food in each range of `BINS`. Also a slope of intake for each neutral gene.
     """
-    founders = world.agents.filter(pl.col("parent_id").is_null())
+    founders = world.agents.filter(pl.col("parent_id").is_null()).sort("agent_id")
     food, water, children = (
         founders[name].to_numpy().astype(np.float64) for name in ("eaten_normal", "eaten_water", "children")
     )
+    outcomes = hedon.assay.founder_outcomes(world.agents, world.weight_names, world.last_step)
+    lifespans = outcomes["lifespan"].to_numpy().astype(np.float64)
     genes = founders[GENE].to_numpy()
     bins = np.digitize(genes, BINS[1:-1])
     return {
         "seed": world.seed,
         "died out": world.extinct_step is not None,
-        "food": float(food.mean()),
-        "water": float(water.mean()),
-        "children": float(children.mean()),
+        "food": known_mean(food),
+        "water": known_mean(water),
+        "children": known_mean(children),
+        "unfinished": float((lifespans >= world.last_step).mean()),
         "alive": mean_alive(world.population),
         "slope": fitness_slope(genes, food),
+        "rate slope": fitness_slope(genes, food / np.maximum(lifespans, 1)),
         "children slope": fitness_slope(genes, children),
-        "intake": [float(food[bins == i].mean()) for i in range(len(BINS) - 1)],
+        "intake": [known_mean(food[bins == i]) for i in range(len(BINS) - 1)],
         **{name: fitness_slope(founders[name].to_numpy(), food) for name in world.neutral_names},
     }
-
-
-def slopes(rows: Sequence[Mapping[str, Any]], condition: str, key: str = "slope") -> dict[int, float]:
-    """The known slopes in the worlds of a condition, with the seeds as keys."""
-    return {row["seed"]: row[key] for row in rows if row["condition"] == condition and row[key] is not None}
-
-
-def gains(rows: Sequence[Mapping[str, Any]], key: str = "slope") -> list[float]:
-    """By how much the slope is larger if food needs water, for each pair of worlds of equal seeds."""
-    gated, free = slopes(rows, GATED, key), slopes(rows, FREE, key)
-    return [gated[seed] - free[seed] for seed in gated if seed in free]
 
 
 def named_tests(rows: Sequence[Mapping[str, Any]], key: str = "slope") -> tuple[Test, Test]:
@@ -100,24 +94,12 @@ def named_tests(rows: Sequence[Mapping[str, Any]], key: str = "slope") -> tuple[
         key: Column of the slope.
     """
     gated = [row for row in rows if row["condition"] == GATED]
-    pairs = {row["seed"] for row in gated} & {row["seed"] for row in rows if row["condition"] == FREE}
-    extinct = sum(row["died out"] for row in gated)
-    both = sum(row["died out"] for row in rows if row["seed"] in pairs)
+    slopes, extinct = by_seed(rows, GATED, key), sum(row["died out"] for row in gated)
+    slope = "liking water is fit if food needs it: slope of intake on the gene"
+    difference = "it is fit because food needs water: that slope less the one if food needs nothing"
     return (
-        mean_test(
-            "liking water is fit if food needs it: slope of intake on the gene",
-            list(slopes(rows, GATED, key).values()),
-            len(gated),
-            extinct,
-            above=True,
-        ),
-        mean_test(
-            "it is fit because food needs water: that slope less the one if food needs nothing",
-            gains(rows, key),
-            len(pairs),
-            both,
-            above=True,
-        ),
+        mean_test(slope, list(slopes.values()), len(gated), extinct, above=True),
+        pair_test(difference, rows, (GATED, FREE), key),
     )
 
 
@@ -141,19 +123,15 @@ def condition_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     for condition in CONDITIONS:
         worlds = [row for row in rows if row["condition"] == condition]
         if worlds:
-            bounds = mean_interval(list(slopes(rows, condition).values()))
-            children = mean_interval(list(slopes(rows, condition, "children slope").values()))
-            means = {
-                key: float(np.mean([row[key] for row in worlds])) for key in ("food", "water", "children", "alive")
-            }
-            intake = np.nanmean([row["intake"] for row in worlds], axis=0)
-            labels = [f"{low:g} to {high:g}" for low, high in pairwise(BINS)]
-            found.append(
-                {"condition": condition, "worlds": len(worlds), **means}
-                | {"slope": bounds.mean, "low": bounds.low, "high": bounds.high}
-                | {"children slope": children.mean, "children low": children.low, "children high": children.high}
-                | dict(zip(labels, intake.tolist(), strict=True))
-            )
+            columns: dict[str, Any] = {"condition": condition, "worlds": len(worlds)}
+            for key in ("food", "water", "children", "unfinished", "alive"):
+                columns[key] = mean_interval(row[key] for row in worlds).mean
+            for key in ("slope", "rate slope", "children slope"):
+                interval = mean_interval(by_seed(rows, condition, key).values())
+                columns |= {key: interval.mean, f"{key} low": interval.low, f"{key} high": interval.high}
+            for i, (low, high) in enumerate(pairwise(BINS)):
+                columns[f"{low:g} to {high:g}"] = mean_interval(row["intake"][i] for row in worlds).mean
+            found.append(columns)
     return found
 
 
@@ -189,8 +167,9 @@ def draw_intake(question: str, rows: Sequence[Mapping[str, Any]]) -> NamedFigure
         axes = figure.subplots()
         axes.axhline(1, color=hedon.figure.PALE, linewidth=0.8)
         for condition, color in colors.items():
-            worlds = [row for row in rows if row["condition"] == condition and row["food"] > 0]
-            relative = np.array([np.array(row["intake"]) / row["food"] for row in worlds]).reshape(-1, len(middle))
+            worlds = [row for row in rows if row["condition"] == condition and row["food"]]
+            relative = np.array([np.array(row["intake"], np.float64) / row["food"] for row in worlds])
+            relative = relative.reshape(-1, len(middle))
             for line in relative:
                 axes.plot(middle, line, color=color, linewidth=0.5, alpha=0.2)
             intervals = [mean_interval(column[np.isfinite(column)].tolist()) for column in relative.T]

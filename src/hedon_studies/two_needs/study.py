@@ -12,7 +12,7 @@ from hedon.assay import by_gene, world_lines
 from hedon.figure import NamedFigure
 from hedon.statistic import mean_interval
 from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
-from hedon_studies.rule import Test, mean_test, verdict_table
+from hedon_studies.rule import Test, by_seed, mean_test, pair_test, verdict_table
 
 FOLDER = Path(__file__).parent
 NAME = "two-needs"
@@ -63,6 +63,7 @@ NEEDS = {
     # Times the square root of 2: a meal then pays 1 if both stores lack as much, as with an additive drive.
     PAID: (*STORE, "reward.pay.drive_reduction.coef=28.284"),
 }
+FOLLOW_UP = "Planned after the three tests, tested by itself, and no part of the answer."
 REDUCERS = {GENE: 1.0, "w_normal": 0.0, "w_water": 0.0, "w_action": 0.0}
 """Genes of agents that are paid for reducing the drive."""
 EATERS = {GENE: 0.0, "w_normal": 1.0, "w_water": 1.0, "w_action": 0.0}
@@ -85,17 +86,17 @@ def measure(world: WorldRecord) -> dict[str, Any]:
     Returns:
         "change": share of reducers at the end, less the share at the start. "generations": mean generation of those
         alive at the end. "alive": mean number of agents alive. For each group, its "food" and "water": pieces eaten
-        per 1,000 steps of life.
+        per 1,000 steps of life; None where records were cut before the agents died.
     """
     agents = world.agents.sort("agent_id")
     lines = world_lines(agents, world.seed, by_gene(agents, REDUCERS, EATERS), world.last_step)
     steps = (agents["death_step"].fill_null(world.last_step) - agents["birth_step"].clip(0)).to_numpy()
     reduces = agents[GENE].to_numpy() > 0.5
-    rates = {
-        f"{group} {name}": 1000 * float(agents[f"eaten_{kind}"].to_numpy()[chosen].sum() / max(steps[chosen].sum(), 1))
-        for group, chosen in (("reducers", reduces), ("eaters", ~reduces))
-        for name, kind in (("food", "normal"), ("water", "water"))
-    }
+    rates: dict[str, float | None] = {}
+    for group, chosen in (("reducers", reduces), ("eaters", ~reduces)):
+        for name, kind in (("food", "normal"), ("water", "water")):
+            eaten = float(agents[f"eaten_{kind}"].to_numpy()[chosen].sum())
+            rates[f"{group} {name}"] = 1000 * eaten / max(int(steps[chosen].sum()), 1) if np.isfinite(eaten) else None
     return {
         "seed": world.seed,
         "died out": world.extinct_step is not None,
@@ -106,41 +107,22 @@ def measure(world: WorldRecord) -> dict[str, Any]:
     }
 
 
-def changes(rows: Sequence[Mapping[str, Any]], condition: str) -> dict[int, float]:
-    """The changes of the share of reducers in the worlds of a condition, with the seeds as keys."""
-    return {row["seed"]: row["change"] for row in rows if row["condition"] == condition}
-
-
-def pair_test(name: str, rows: Sequence[Mapping[str, Any]], first: str, second: str) -> Test:
-    """Tests whether the share of reducers grows more in one condition than in another, in pairs of equal seeds.
-
-    Args:
-        name: Name of the claim.
-        rows: Rows of worlds, each with "condition", "seed", "died out" and "change".
-        first: Condition in which it should grow more.
-        second: The other condition.
-    """
-    more, less = changes(rows, first), changes(rows, second)
-    pairs = sorted(more.keys() & less.keys())
-    extinct = sum(row["died out"] for row in rows if row["seed"] in pairs and row["condition"] in (first, second))
-    return mean_test(name, [more[seed] - less[seed] for seed in pairs], len(pairs), extinct, above=True)
-
-
 def named_tests(rows: Sequence[Mapping[str, Any]]) -> list[Test]:
-    """The three tests, from the rows of all worlds."""
-    two = changes(rows, TWO)
-    extinct = sum(row["died out"] for row in rows if row["condition"] == TWO)
+    """The three tests, from the rows of all worlds, each with "condition", "seed", "died out" and "change"."""
+    two = [row for row in rows if row["condition"] == TWO]
+    changes, extinct = by_seed(rows, TWO, "change"), sum(row["died out"] for row in two)
     growth = "with two needs, drive reduction is fitter: change of its share"
+    more = "its share grows more than with {}: difference of changes"
     return [
-        mean_test(growth, list(two.values()), len(two), extinct, above=True),
-        pair_test("its share grows more than with one need: difference of changes", rows, TWO, ONE),
-        pair_test("its share grows more than with an additive drive: difference of changes", rows, TWO, ADDITIVE),
+        mean_test(growth, list(changes.values()), len(two), extinct, above=True),
+        pair_test(more.format("one need"), rows, (TWO, ONE), "change"),
+        pair_test(more.format("an additive drive"), rows, (TWO, ADDITIVE), "change"),
     ]
 
 
 def follow_up(rows: Sequence[Mapping[str, Any]]) -> Test:
     """The test of the follow-up: whether drives are fitter if they pay more."""
-    return pair_test("larger pay makes drive reduction fitter: difference of changes", rows, PAID, TWO)
+    return pair_test("larger pay makes drive reduction fitter: difference of changes", rows, (PAID, TWO), "change")
 
 
 def condition_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -149,9 +131,9 @@ def condition_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     for condition in CONDITIONS:
         worlds = [row for row in rows if row["condition"] == condition]
         if worlds:
-            bounds = mean_interval(list(changes(rows, condition).values()))
+            bounds = mean_interval(row["change"] for row in worlds)
             keys = [key for key in worlds[0] if key not in ("condition", "seed", "died out", "change")]
-            means = {key: float(np.mean([row[key] for row in worlds])) for key in keys}
+            means = {key: mean_interval(row[key] for row in worlds).mean for key in keys}
             found.append(
                 {"condition": condition, "worlds": len(worlds)}
                 | {"change": bounds.mean, "low": bounds.low, "high": bounds.high}
@@ -175,7 +157,7 @@ def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     yield draw_changes(question, rows)
     note = missing_note(inputs, tuple(CONDITIONS.values()), SCALE)
     yield verdict_table("two_needs_verdict", named_tests(rows), note)
-    yield verdict_table("two_needs_follow_up_verdict", (follow_up(rows),), note)
+    yield verdict_table("two_needs_follow_up_verdict", (follow_up(rows),), FOLLOW_UP)
     yield make_table("two_needs_condition", "Each condition: means over worlds", condition_rows(rows))
     yield make_table("two_needs_world", "Each world: how the share of reducers changed", rows, shown=False)
 
@@ -192,7 +174,7 @@ def draw_changes(question: str, rows: Sequence[Mapping[str, Any]]) -> NamedFigur
             for x, row in zip(spread, worlds, strict=True):
                 marker = "x" if row["died out"] else "o"
                 axes.plot(x, row["change"], marker, color=hedon.figure.PALE, markersize=3)
-            interval = mean_interval(list(changes(rows, condition).values()))
+            interval = mean_interval(row["change"] for row in worlds)
             bounds = np.array([interval.low, interval.high], np.float64)  # None becomes NaN
             axes.plot([place + 0.15] * 2, bounds, color=hedon.figure.BLUE, linewidth=2)
             if interval.mean is not None:

@@ -18,7 +18,17 @@ from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, d
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
 from hedon_studies.optimal_reward import study as optimal
 from hedon_studies.optimal_reward.study import FREE, GATED, draw_intake
-from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, verdict_table
+from hedon_studies.rule import (
+    NO,
+    OPEN,
+    YES,
+    by_seed,
+    count_test,
+    mean_test,
+    pair_differences,
+    pair_test,
+    verdict_table,
+)
 from hedon_studies.two_needs import study as needs
 from hedon_studies.two_needs.study import ADDITIVE, ONE, PAID, TWO, draw_changes
 
@@ -145,12 +155,18 @@ def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
     assert f"slope of relative intake of food is {slope.effect:.2f} ({slope.low:.2f} … {slope.high:.2f})" in page
     assert f"smaller by {difference.effect:.2f} ({difference.low:.2f} … {difference.high:.2f})" in page
     pieces = worlds.with_columns(pl.col("slope") * pl.col("food")).to_dicts()
-    of_children = mean_interval(optimal.gains(rows, "children slope"))
+    of_children = mean_interval(pair_differences(rows, (GATED, FREE), "children slope"))
     assert f"two cases is {of_children.mean:.2f} ({of_children.low:.2f} … {of_children.high:.2f}; not" in page
+    (low, high) = (pl.read_csv(RESULTS / "optimal-reward" / "conditions.csv")["unfinished"] * 100).to_list()
+    assert f"{low:.0f} % of founders are then alive if food needs water, {high:.0f} % if not" in page
+    rates = [mean_interval(by_seed(rows, condition, "rate slope").values()) for condition in (GATED, FREE)]
+    rates.append(mean_interval(pair_differences(rows, (GATED, FREE), "rate slope")))
+    first, second, change = (f"{bounds.mean:.2f} ({bounds.low:.2f} … {bounds.high:.2f})" for bounds in rates)
+    assert f"are {first} and {second}, a difference of {change}" in page
     for values, text in (
-        (list(optimal.slopes(pieces, GATED).values()), "worth {} if food needs water"),
-        (list(optimal.slopes(pieces, FREE).values()), "and {} if not"),
-        (optimal.gains(pieces), "if not, {} more"),
+        (list(by_seed(pieces, GATED, "slope").values()), "worth {} if food needs water"),
+        (list(by_seed(pieces, FREE, "slope").values()), "and {} if not"),
+        (pair_differences(pieces, (GATED, FREE), "slope"), "if not, {} more"),
     ):
         bounds = mean_interval(values)
         assert text.format(f"{bounds.mean:.1f} ({bounds.low:.1f} … {bounds.high:.1f})") in page
@@ -160,7 +176,7 @@ def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
     for row in pl.read_csv(RESULTS / "optimal-reward" / "conditions.csv").iter_rows(named=True):
         intervals = []
         for name, key in (("slope", "slope"), ("children slope", "children slope")):
-            bounds = mean_interval(list(optimal.slopes(rows, row["condition"], key).values()))
+            bounds = mean_interval(by_seed(rows, row["condition"], key).values())
             assert row[name] == pytest.approx(bounds.mean)
             intervals.append(f"{bounds.mean:.2f} ({bounds.low:.2f} … {bounds.high:.2f})")
         intake = list(row.values())[-4:]
@@ -235,11 +251,11 @@ def test_the_page_on_two_needs_has_the_numbers_of_its_tables() -> None:
     found = needs.follow_up(rows)
     assert answers(found) == [OPEN]
     assert f"{number(found.effect)} ({number(found.low)} … {number(found.high)}; p {found.p:.2f}) more" in page
-    unplanned = needs.pair_test("additive, larger pay", rows, ADDITIVE, PAID)
+    unplanned = pair_test("additive, larger pay", rows, (ADDITIVE, PAID), "change")
     assert f"by {number(unplanned.effect)} ({number(unplanned.low)} … {number(unplanned.high)}) more than" in page
     assert f"from {number(worlds['change'].min(), 2)} to {number(worlds['change'].max(), 2)}" in page
     for row in pl.read_csv(RESULTS / "two-needs" / "conditions.csv").iter_rows(named=True):
-        bounds = mean_interval(list(needs.changes(rows, row["condition"]).values()))
+        bounds = mean_interval(by_seed(rows, row["condition"], "change").values())
         assert row["change"] == pytest.approx(bounds.mean)
         change = f"{number(bounds.mean)} ({number(bounds.low)} … {number(bounds.high)})"
         eaten = [
