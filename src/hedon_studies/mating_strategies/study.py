@@ -69,16 +69,17 @@ def make_mixed(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
         for share, condition in MIXTURES.items()
         if condition.label in inputs.worlds
     }
-    if len(lines) < 2:
-        note = missing(MIXTURES.values(), inputs)
-        yield NamedFigure("mating-strategies", question, hedon.figure.draw_message("no worlds yet"), note)
-        return
-    frequency = estimate_frequency(("foragers", "trackers"), lines)
-    caption = "Dots: worlds that began with one share of foragers. Line: all of them together, with its interval."
-    yield NamedFigure("mating-strategies", question, hedon.assay.draw_frequency(frequency), caption)
     note = missing_note(inputs, tuple(MIXTURES.values()), Scale(SEEDS, MIXED["steps"]))
+    frequency = estimate_frequency(("foragers", "trackers"), lines) if len(lines) > 1 else None
+    if frequency is None:
+        drawn = hedon.figure.draw_message("needs worlds of two shares")
+        yield NamedFigure("mating-strategies", question, drawn, missing(MIXTURES.values(), inputs))
+    else:
+        caption = "Dots: worlds that began with one share of foragers. Line: all of them together, with its interval."
+        yield NamedFigure("mating-strategies", question, hedon.assay.draw_frequency(frequency), caption)
     yield verdict_table("mating_verdict", invasion_tests(lines), note, NAMED)
-    yield from hedon.assay.frequency_tables(frequency)
+    if frequency is not None:
+        yield from hedon.assay.frequency_tables(frequency)
     title = "Each world: the share of foragers at the start and at the end"
     yield make_table("mating_share_world", title, world_rows(lines), shown=False)
 

@@ -1,6 +1,7 @@
 """Studies of classic questions: their decision rule works as written, and each runs from its settings to its page."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,12 +11,13 @@ from command import hedon
 
 from hedon.assay import Lines
 from hedon.compare.source import read_table
+from hedon.config.load import load_config
 from hedon.figure.style import svg_bytes
 from hedon.statistic import FOR_VERDICT as WORLDS
 from hedon.statistic import mean_interval
-from hedon_studies.founder import fitness_slope
+from hedon_studies.founder import fitness_slope, known_mean, spread_gene
 from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, draw_slopes, named_test
-from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests
+from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests, world_rows
 from hedon_studies.optimal_reward import study as optimal
 from hedon_studies.optimal_reward.study import FREE, GATED, draw_intake
 from hedon_studies.rule import (
@@ -109,6 +111,19 @@ def test_the_slope_of_relative_fitness_on_a_gene_is_found() -> None:
     children = np.random.default_rng(4).poisson(2.0 * (1 + 0.3 * genes))
     assert fitness_slope(genes, children) == pytest.approx(0.3 / (1 + 0.3 * genes.mean()), abs=0.03)
     assert fitness_slope(genes, np.zeros(20_000)) is None
+    assert fitness_slope(genes, np.where(genes > 0, np.nan, children)) is None
+    assert known_mean(np.array([1.0, 2.0])) == 1.5
+    assert known_mean(np.array([1.0, np.nan])) is None
+
+
+def test_spread_founders_differ_in_all_genes_but_the_fixed_ones() -> None:
+    table = spread_gene(load_config("appetite"), -1.0, 3.0, {"w_normal": 0.5})
+    genomes = dict(zip(table.genes, table.values.T, strict=True))
+    assert set(genomes["w_normal"]) == {0.5}
+    for name in ("w_action", "neutral_1", "neutral_16"):
+        ranked = np.sort(genomes[name])
+        assert ranked == pytest.approx(np.linspace(-1, 3, len(ranked)), abs=0.15)
+    assert abs(np.corrcoef(genomes["w_action"], genomes["neutral_1"])[0, 1]) < 0.1
 
 
 def test_worlds_without_children_give_a_figure_without_points() -> None:
@@ -303,6 +318,15 @@ def test_foragers_and_trackers_invade_each_other_if_both_grow_when_rare() -> Non
     assert answers(*invasion_tests({COMMON: shares(COMMON, -0.1)})) == [OPEN, YES]
 
 
+def test_the_table_of_worlds_has_their_shares_and_whether_they_died_out() -> None:
+    first, second = world_rows({RARE: shares(RARE, 0.1, worlds=2)})
+    assert (first["foragers"], first["seed"], first["died out"]) == (RARE, 0, True)
+    assert (second["seed"], second["died out"]) == (1, False)
+    assert (first["start"], first["end"]) == pytest.approx((RARE, RARE + 0.11))
+    assert (second["start"], second["end"]) == pytest.approx((RARE, RARE + 0.09))
+    assert first["generations"] == 1
+
+
 def test_clusters_are_judged_against_neutral_genes() -> None:
     rows = [{"clusters": seed % 2 == 0, "died out": seed < 3, "neutral genes": 16} for seed in range(WORLDS)]
     assert answers(cluster_test(rows)) == [YES]
@@ -322,6 +346,12 @@ def run_quick(folder: Path, name: str) -> dict[str, list[dict]]:
     assert len(tables["world"]) == sum(len(item["worlds"]) for item in found["items"]), "one seed per condition"
     assert read_table(str(folder / "studies" / name)).factors == ("condition",)
     assert (folder / "studies" / name / "figures" / f"{name}.svg").stat().st_size > 10_000
+    (seed,) = {row["seed"] for row in tables["world"]}
+    shorter = hedon("study", "report", name, "--seeds", str(seed), "--steps", "1500", "--out", "cut", cwd=folder)
+    assert (shorter.returncode, shorter.stderr) == (0, ""), "what living agents had eaten by then is not recorded"
+    cut = json.loads((folder / "cut" / "study.json").read_text(encoding="utf-8"))
+    assert len(cut["tables"]["world"]["rows"]) == len(tables["world"])
+    assert not re.search(r"\bnan\b", json.dumps(cut), re.IGNORECASE)
     return tables
 
 
