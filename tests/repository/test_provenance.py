@@ -90,6 +90,7 @@ def test_the_start_is_recorded_where_the_table_says(run):
         "learner/decoy/worlds.csv",
         "learner/behavior/runs.csv",
         "lifespan/runs.csv",
+        "mating/runs.csv",
         "optimal-reward/runs.csv",
         "two-needs/runs.csv",
         "two-needs/follow-up.csv",

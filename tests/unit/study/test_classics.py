@@ -5,7 +5,6 @@ import re
 from pathlib import Path
 
 import numpy as np
-import polars as pl
 import pytest
 from command import hedon
 
@@ -14,7 +13,6 @@ from hedon.compare.source import read_table
 from hedon.config.load import load_config
 from hedon.figure.style import svg_bytes
 from hedon.statistic import FOR_VERDICT as WORLDS
-from hedon.statistic import mean_interval
 from hedon_studies.founder import fitness_slope, known_mean, spread_gene
 from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, draw_slopes, named_test
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests, world_rows
@@ -24,11 +22,8 @@ from hedon_studies.rule import (
     NO,
     OPEN,
     YES,
-    by_seed,
     count_test,
     mean_test,
-    pair_differences,
-    pair_test,
     verdict_table,
 )
 from hedon_studies.two_needs import study as needs
@@ -159,46 +154,6 @@ def test_a_pair_without_one_of_its_worlds_has_no_difference() -> None:
     assert svg_bytes(draw_intake("Is a liking for water fit if water is only a means to food?", starved).figure)
 
 
-def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
-    page = " ".join((RESULTS / "optimal-reward.md").read_text(encoding="utf-8").split())
-    worlds = pl.read_csv(RESULTS / "optimal-reward" / "worlds.csv")
-    assert (worlds.height, worlds["died out"].sum()) == (60, 0)
-    rows = worlds.to_dicts()
-    slope, difference = optimal.named_tests(rows)
-    assert answers(slope, difference) == [YES, YES]
-    assert max(row["p (Holm)"] for row in verdict_table("made_up", (slope, difference)).rows.to_dicts()) < 0.0001
-    assert f"slope of relative intake of food is {slope.effect:.2f} ({slope.low:.2f} … {slope.high:.2f})" in page
-    assert f"smaller by {difference.effect:.2f} ({difference.low:.2f} … {difference.high:.2f})" in page
-    pieces = worlds.with_columns(pl.col("slope") * pl.col("food")).to_dicts()
-    of_children = mean_interval(pair_differences(rows, (GATED, FREE), "children slope"))
-    assert f"two cases is {of_children.mean:.2f} ({of_children.low:.2f} … {of_children.high:.2f}; not" in page
-    (low, high) = (pl.read_csv(RESULTS / "optimal-reward" / "conditions.csv")["unfinished"] * 100).to_list()
-    assert f"{low:.0f} % of founders are then alive if food needs water, {high:.0f} % if not" in page
-    rates = [mean_interval(by_seed(rows, condition, "rate slope").values()) for condition in (GATED, FREE)]
-    rates.append(mean_interval(pair_differences(rows, (GATED, FREE), "rate slope")))
-    first, second, change = (f"{bounds.mean:.2f} ({bounds.low:.2f} … {bounds.high:.2f})" for bounds in rates)
-    assert f"are {first} and {second}, a difference of {change}" in page
-    for values, text in (
-        (list(by_seed(pieces, GATED, "slope").values()), "worth {} if food needs water"),
-        (list(by_seed(pieces, FREE, "slope").values()), "and {} if not"),
-        (pair_differences(pieces, (GATED, FREE), "slope"), "if not, {} more"),
-    ):
-        bounds = mean_interval(values)
-        assert text.format(f"{bounds.mean:.1f} ({bounds.low:.1f} … {bounds.high:.1f})") in page
-    neutral = [name for name in worlds.columns if name.startswith("neutral_")]
-    outside = [row["test"] for row in optimal.control_rows(rows, neutral) if row["low"] > 0 or row["high"] < 0]
-    assert (len(neutral), outside) == (16, ["difference"])
-    for row in pl.read_csv(RESULTS / "optimal-reward" / "conditions.csv").iter_rows(named=True):
-        intervals = []
-        for name, key in (("slope", "slope"), ("children slope", "children slope")):
-            bounds = mean_interval(by_seed(rows, row["condition"], key).values())
-            assert row[name] == pytest.approx(bounds.mean)
-            intervals.append(f"{bounds.mean:.2f} ({bounds.low:.2f} … {bounds.high:.2f})")
-        intake = list(row.values())[-4:]
-        eaten = ", ".join(f"{value:.1f}" for value in intake)
-        assert f"| {row['condition']} | {row['alive']:.0f} | {' | '.join(intervals)} | {eaten} |" in page
-
-
 def need_rows(two: float, one: float, additive: float, seeds: int = WORLDS) -> list[dict]:
     """Rows of worlds in which the share of reducers changes by about these numbers."""
     rng = np.random.default_rng(4)
@@ -226,68 +181,6 @@ def test_worlds_without_a_partner_count_in_the_first_test_only() -> None:
     assert [test.worlds for test in (first, second, third)] == [WORLDS, WORLDS - 1, WORLDS]
     assert [test.extinct for test in (first, second, third)] == [1, 2, 2]
     assert svg_bytes(draw_changes("Is drive reduction fitter than pay per meal?", rows).figure)
-
-
-def test_the_page_on_lifespans_has_the_numbers_of_its_tables() -> None:
-    page = " ".join((RESULTS / "lifespan.md").read_text(encoding="utf-8").split())
-    worlds = pl.read_csv(RESULTS / "lifespan" / "worlds.csv")
-    assert (worlds.height, worlds["died out"].sum()) == (120, 5)
-    assert worlds.filter("died out")["hazard"].unique().to_list() == [4.0]
-    found = named_test(worlds.to_dicts())
-    assert answers(found) == [YES]
-    assert f"{found.effect:.3f} ({found.low:.3f} … {found.high:.3f}) on average over 30 seeds (p {found.p:.2f})" in page
-    control = control_rows(worlds.to_dicts(), [name for name in worlds.columns if name.startswith("neutral_")])
-    (outside,) = [row for row in control if row["low"] > 0 or row["high"] < 0]
-    assert f"shows a larger rise ({outside['effect']:.3f})" in page
-    for row in pl.read_csv(RESULTS / "lifespan" / "hazards.csv").iter_rows(named=True):
-        bounds = mean_interval(worlds.filter(pl.col("hazard") == row["hazard"])["slope"].to_list())
-        assert (row["slope"], row["low"], row["high"]) == pytest.approx((bounds.mean, bounds.low, bounds.high))
-        slope_text = f"{row['slope']:.3f} ({row['low']:.3f} … {row['high']:.3f})"
-        children = ", ".join(f"{value:.2f}" for value in list(row.values())[8:])
-        numbers = f"{row['lifespan']:,.0f} | {row['alive']:.0f} | {slope_text} | {children}"
-        assert f"| \N{MULTIPLICATION SIGN} {row['hazard']:g} | {numbers} |" in page
-
-
-def number(value: float, digits: int = 3) -> str:
-    return f"{value:.{digits}f}".replace("-", "\N{MINUS SIGN}")
-
-
-def test_the_page_on_two_needs_has_the_numbers_of_its_tables() -> None:
-    page = " ".join((RESULTS / "two-needs.md").read_text(encoding="utf-8").split())
-    worlds = pl.read_csv(RESULTS / "two-needs" / "worlds.csv")
-    assert (worlds.height, worlds["died out"].sum()) == (120, 0)
-    rows = worlds.to_dicts()
-    tests = needs.named_tests(rows)
-    table = verdict_table("made_up", tests).rows.to_dicts()
-    assert [row["answer"] for row in table] == [OPEN, OPEN, NO]
-    for row in table:
-        bounds = f"{number(row['effect'])} ({number(row['low'])} … {number(row['high'])}; p {row['p (Holm)']:.2f})"
-        assert bounds in page
-    found = needs.follow_up(rows)
-    assert answers(found) == [OPEN]
-    assert f"{number(found.effect)} ({number(found.low)} … {number(found.high)}; p {found.p:.2f}) more" in page
-    unplanned = pair_test("additive, larger pay", rows, (ADDITIVE, PAID), "change")
-    assert f"by {number(unplanned.effect)} ({number(unplanned.low)} … {number(unplanned.high)}) more than" in page
-    assert f"from {number(worlds['change'].min(), 2)} to {number(worlds['change'].max(), 2)}" in page
-    for row in pl.read_csv(RESULTS / "two-needs" / "conditions.csv").iter_rows(named=True):
-        bounds = mean_interval(by_seed(rows, row["condition"], "change").values())
-        assert row["change"] == pytest.approx(bounds.mean)
-        change = f"{number(bounds.mean)} ({number(bounds.low)} … {number(bounds.high)})"
-        eaten = [
-            ", ".join(f"{row[f'{group} {kind}']:.1f}" for kind in ("food", "water")) for group in ("reducers", "eaters")
-        ]
-        assert (
-            f"| {row['condition']} | {row['alive']:.0f} | {row['generations']:.1f} | {change} | {' | '.join(eaten)} |"
-            in page
-        )
-        worlds_of = worlds.filter(condition=row["condition"])
-        for kind in ("food", "water"):
-            less = mean_interval((worlds_of[f"reducers {kind}"] - worlds_of[f"eaters {kind}"]).to_list())
-            assert less.mean < 0
-            if (row["condition"], kind) == (ADDITIVE, "food"):
-                assert f"{number(less.mean, 2)} ({number(less.low, 2)} … {number(less.high, 2)})" in page
-            else:
-                assert less.high < 0
 
 
 def test_more_tests_make_the_rule_stricter() -> None:
