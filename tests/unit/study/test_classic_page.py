@@ -128,8 +128,10 @@ def test_the_page_on_mating_has_the_numbers_of_its_tables() -> None:
     assert (worlds.height, worlds["died out"].sum()) == (150, 0)
     for start, share in ((0.05, 0.0), (0.95, 1.0)):
         some = worlds.filter(pl.col("foragers") == start)
-        bounds = mean_interval((some["end"] - some["start"]).to_list())
-        assert f"by +{bounds.mean:.3f} ({number(bounds.low)} … {number(bounds.high)}" in page
+        rare_one = (some["end"] - some["start"]) * (1 if start < 0.5 else -1)
+        bounds = mean_interval(rare_one.to_list())
+        change = f"{'+' if bounds.mean > 0 else ''}{number(bounds.mean)} ({number(bounds.low)} … {number(bounds.high)}"
+        assert f"changes by {change}" in page
         lost = int((some["end"] == share).sum())
         (row,) = pl.read_csv(RESULTS / "mating" / "shares.csv").filter(pl.col("share at the start") == start).to_dicts()
         only_foragers, only_trackers = list(row.values())[8:10]
@@ -137,8 +139,16 @@ def test_the_page_on_mating_has_the_numbers_of_its_tables() -> None:
     rare = worlds.filter(pl.col("foragers").is_in([0.05, 0.95]))
     assert f"in {rare['end'].is_in([0.0, 1.0]).sum()} of {rare.height}" in page
     slope, crossing = pl.read_csv(RESULTS / "mating" / "frequency.csv").iter_rows(named=True)
-    assert f"slope +{slope['value']:.3f} per generation, {number(slope['low'])} … {number(slope['high'])}" in page
+    assert f"is +{slope['value']:.3f} per generation ({number(slope['low'])} … {number(slope['high'])})" in page
     assert crossing["value"] is None
+    line = pl.read_csv(RESULTS / "mating" / "line.csv")
+    above = line.filter(pl.col("low") > 0)["share"]
+    assert f"between {100 * above[0]:.0f} and {100 * above[-1]:.0f} % foragers" in page
+    (half,) = line.filter((pl.col("share") - 0.5).abs() < 1e-9).to_dicts()
+    assert f"(+{half['line']:.3f} per generation at a half, {half['low']:.3f} … {half['high']:.3f})" in page
+    overall = worlds.group_by("seed").agg((pl.col("end") - pl.col("start")).mean())["end"]
+    bounds = mean_interval(overall.to_list())
+    assert f"increase by {bounds.mean:.3f} ({bounds.low:.3f} … {bounds.high:.3f})" in page
     for row in pl.read_csv(RESULTS / "mating" / "shares.csv").iter_rows(named=True):
         some = worlds.filter(pl.col("foragers") == row["share at the start"])
         assert row["share at the end"] == pytest.approx(some["end"].mean())
@@ -148,6 +158,9 @@ def test_the_page_on_mating_has_the_numbers_of_its_tables() -> None:
         assert f"| {100 * row['share at the start']:.0f} % | {cells} |" in page
     types = pl.read_csv(RESULTS / "mating" / "types.csv")
     foragers, trackers = (types.filter(type=name) for name in ("foragers", "trackers"))
+    living = [100 * part["living above the threshold"] for part in (foragers, trackers)]
+    ranges = [f"{part.min():.0f} to {part.max():.0f} % of" for part in living]
+    assert f"At the end, {ranges[0]} foragers and {ranges[1]} trackers" in page
     assert (trackers["children per 1,000,000 steps"] > foragers["children per 1,000,000 steps"]).all()
     assert (trackers["food per 1,000 steps"] < foragers["food per 1,000 steps"]).all()
     assert (trackers["deaths per 1,000,000 steps"] > foragers["deaths per 1,000,000 steps"]).all()
