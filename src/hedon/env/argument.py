@@ -22,7 +22,7 @@ NETWORKS = ("ppo", "fixed")
 _DRAWN = 2**32
 """Random seeds are below this number."""
 SLOTS_PER_THREAD = 150
-"""Slots for which a thread saves more time than threads wait for one another, if no agent learns in the engine.
+"""Slots for which a thread saves more time than threads wait for one another, if the engine computes no networks.
 
 Measured with one world of the baseline's density on two AVX-512 cores: with 100 founders in 150 slots, a step takes
 86 µs on one thread and 95 µs on two; with 200 founders in 300 slots, 159 and 145 µs.

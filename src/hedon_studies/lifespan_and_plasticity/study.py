@@ -14,7 +14,8 @@ import hedon.figure
 from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive
 from hedon.figure import NamedFigure
 from hedon.statistic import mean_interval
-from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
+from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing_note
+from hedon_studies.condition import each_condition, measured_rows, no_worlds
 from hedon_studies.founder import fitness_slope, known_mean, spread_gene
 from hedon_studies.rule import Test, mean_test, verdict_table
 
@@ -112,34 +113,28 @@ def control_rows(rows: Sequence[Mapping[str, Any]], neutral: Sequence[str]) -> l
 def hazard_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """A row for each hazard: how long founders live, and what their gene is worth, as means over worlds."""
     found = []
-    for hazard in HAZARDS:
-        worlds = [row for row in rows if row["hazard"] == hazard]
-        if worlds:
-            bounds = mean_interval(row["slope"] for row in worlds)
-            means = {key: mean_interval(row[key] for row in worlds).mean for key in ("lifespan", "unfinished", "alive")}
-            children = {
-                f"{low:g} to {high:g}": mean_interval(row["children"][i] for row in worlds).mean
-                for i, (low, high) in enumerate(pairwise(BINS))
-            }
-            found.append(
-                {"hazard": hazard, "worlds": len(worlds), **means}
-                | {"slope": bounds.mean, "low": bounds.low, "high": bounds.high}
-                | children
-            )
+    for hazard, worlds in each_condition(rows, CONDITIONS, "hazard"):
+        bounds = mean_interval(row["slope"] for row in worlds)
+        means = {key: mean_interval(row[key] for row in worlds).mean for key in ("lifespan", "unfinished", "alive")}
+        children = {
+            f"{low:g} to {high:g}": mean_interval(row["children"][i] for row in worlds).mean
+            for i, (low, high) in enumerate(pairwise(BINS))
+        }
+        found.append(
+            {"hazard": hazard, "worlds": len(worlds), **means}
+            | {"slope": bounds.mean, "low": bounds.low, "high": bounds.high}
+            | children
+        )
     return found
 
 
 def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """Makes the figure, and the tables of the answer, of hazards, of neutral genes and of worlds."""
     question = "Do shorter lives favor faster learning?"
-    records = [
-        (hazard, world) for hazard, condition in CONDITIONS.items() for world in inputs.worlds.get(condition.label, ())
-    ]
-    if not records:
-        note = missing(CONDITIONS.values(), inputs)
-        yield NamedFigure(NAME, question, hedon.figure.draw_message("no worlds yet"), note)
+    rows = measured_rows(inputs, CONDITIONS, measure, "hazard")
+    if not rows:
+        yield no_worlds(NAME, question, inputs, CONDITIONS)
         return
-    rows = [{"hazard": hazard} | measure(world) for hazard, world in records]
     yield from results(question, rows, missing_note(inputs, tuple(CONDITIONS.values()), SCALE))
 
 

@@ -14,7 +14,8 @@ import hedon.figure
 from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive
 from hedon.figure import NamedFigure
 from hedon.statistic import mean_interval
-from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
+from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing_note
+from hedon_studies.condition import each_condition, measured_rows, no_worlds
 from hedon_studies.founder import fitness_slope, known_mean, spread_gene
 from hedon_studies.rule import Test, by_seed, mean_test, pair_test, verdict_table
 
@@ -120,32 +121,25 @@ def control_rows(rows: Sequence[Mapping[str, Any]], neutral: Sequence[str]) -> l
 def condition_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """A row for each condition: what founders ate, and what their gene is worth, as means over worlds."""
     found = []
-    for condition in CONDITIONS:
-        worlds = [row for row in rows if row["condition"] == condition]
-        if worlds:
-            columns: dict[str, Any] = {"condition": condition, "worlds": len(worlds)}
-            for key in ("food", "water", "children", "unfinished", "alive"):
-                columns[key] = mean_interval(row[key] for row in worlds).mean
-            for key in ("slope", "rate slope", "children slope"):
-                interval = mean_interval(by_seed(rows, condition, key).values())
-                columns |= {key: interval.mean, f"{key} low": interval.low, f"{key} high": interval.high}
-            for i, (low, high) in enumerate(pairwise(BINS)):
-                columns[f"{low:g} to {high:g}"] = mean_interval(row["intake"][i] for row in worlds).mean
-            found.append(columns)
+    for condition, worlds in each_condition(rows, CONDITIONS):
+        columns: dict[str, Any] = {"condition": condition, "worlds": len(worlds)}
+        for key in ("food", "water", "children", "unfinished", "alive"):
+            columns[key] = mean_interval(row[key] for row in worlds).mean
+        for key in ("slope", "rate slope", "children slope"):
+            interval = mean_interval(row[key] for row in worlds)
+            columns |= {key: interval.mean, f"{key} low": interval.low, f"{key} high": interval.high}
+        for i, (low, high) in enumerate(pairwise(BINS)):
+            columns[f"{low:g} to {high:g}"] = mean_interval(row["intake"][i] for row in worlds).mean
+        found.append(columns)
     return found
 
 
 def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """Makes the figure, and the tables of the answer, of conditions, of neutral genes and of worlds."""
     question = "Is a liking for water fit if water is only a means to food?"
-    rows = [
-        {"condition": name} | measure(world)
-        for name, condition in CONDITIONS.items()
-        for world in inputs.worlds.get(condition.label, ())
-    ]
+    rows = measured_rows(inputs, CONDITIONS, measure)
     if not rows:
-        note = missing(CONDITIONS.values(), inputs)
-        yield NamedFigure(NAME, question, hedon.figure.draw_message("no worlds yet"), note)
+        yield no_worlds(NAME, question, inputs, CONDITIONS)
         return
     yield draw_intake(question, rows)
     note = missing_note(inputs, tuple(CONDITIONS.values()), SCALE)

@@ -11,7 +11,8 @@ from hedon.analysis import ResultTable, WorldRecord, make_table, mean_alive
 from hedon.assay import by_gene, world_lines
 from hedon.figure import NamedFigure
 from hedon.statistic import mean_interval
-from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing, missing_note
+from hedon.study import Condition, Item, ItemInputs, Scale, Study, missing_note
+from hedon_studies.condition import each_condition, measured_rows, no_worlds
 from hedon_studies.rule import Test, by_seed, mean_test, pair_test, verdict_table
 
 FOLDER = Path(__file__).parent
@@ -128,31 +129,24 @@ def follow_up(rows: Sequence[Mapping[str, Any]]) -> Test:
 def condition_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """A row for each condition, with means over worlds."""
     found = []
-    for condition in CONDITIONS:
-        worlds = [row for row in rows if row["condition"] == condition]
-        if worlds:
-            bounds = mean_interval(row["change"] for row in worlds)
-            keys = [key for key in worlds[0] if key not in ("condition", "seed", "died out", "change")]
-            means = {key: mean_interval(row[key] for row in worlds).mean for key in keys}
-            found.append(
-                {"condition": condition, "worlds": len(worlds)}
-                | {"change": bounds.mean, "low": bounds.low, "high": bounds.high}
-                | means
-            )
+    for condition, worlds in each_condition(rows, CONDITIONS):
+        bounds = mean_interval(row["change"] for row in worlds)
+        keys = [key for key in worlds[0] if key not in ("condition", "seed", "died out", "change")]
+        means = {key: mean_interval(row[key] for row in worlds).mean for key in keys}
+        found.append(
+            {"condition": condition, "worlds": len(worlds)}
+            | {"change": bounds.mean, "low": bounds.low, "high": bounds.high}
+            | means
+        )
     return found
 
 
 def make(inputs: ItemInputs) -> Iterator[NamedFigure | ResultTable]:
     """Makes the figure, and the tables of the answer, of conditions and of worlds."""
     question = "Is drive reduction fitter than pay per meal?"
-    rows = [
-        {"condition": name} | measure(world)
-        for name, condition in CONDITIONS.items()
-        for world in inputs.worlds.get(condition.label, ())
-    ]
+    rows = measured_rows(inputs, CONDITIONS, measure)
     if not rows:
-        note = missing(CONDITIONS.values(), inputs)
-        yield NamedFigure(NAME, question, hedon.figure.draw_message("no worlds yet"), note)
+        yield no_worlds(NAME, question, inputs, CONDITIONS)
         return
     yield draw_changes(question, rows)
     note = missing_note(inputs, tuple(CONDITIONS.values()), SCALE)

@@ -1,12 +1,16 @@
 """The pages on studies of classic claims agree with the tables behind them."""
 
+import re
 from pathlib import Path
 
+import numpy as np
 import polars as pl
 import pytest
 
+from hedon.assay import Lines
 from hedon.statistic import mean_interval
 from hedon_studies.lifespan_and_plasticity.study import control_rows, named_test
+from hedon_studies.mating_strategies import study as mating
 from hedon_studies.optimal_reward import study as optimal
 from hedon_studies.optimal_reward.study import FREE, GATED
 from hedon_studies.rule import NO, OPEN, YES, by_seed, pair_differences, pair_test, verdict_table
@@ -57,7 +61,7 @@ def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
     pieces = worlds.with_columns(pl.col("slope") * pl.col("food")).to_dicts()
     of_children = mean_interval(pair_differences(rows, (GATED, FREE), "children slope"))
     assert f"two cases is {of_children.mean:.2f} ({of_children.low:.2f} … {of_children.high:.2f}; not" in page
-    (low, high) = (pl.read_csv(RESULTS / "optimal-reward" / "conditions.csv")["unfinished"] * 100).to_list()
+    low, high = (pl.read_csv(RESULTS / "optimal-reward" / "conditions.csv")["unfinished"] * 100).to_list()
     assert f"{low:.0f} % of founders are then alive if food needs water, {high:.0f} % if not" in page
     rates = [mean_interval(by_seed(rows, condition, "rate slope").values()) for condition in (GATED, FREE)]
     rates.append(mean_interval(pair_differences(rows, (GATED, FREE), "rate slope")))
@@ -136,6 +140,17 @@ def test_the_page_on_mating_has_the_numbers_of_its_tables() -> None:
         (row,) = pl.read_csv(RESULTS / "mating" / "shares.csv").filter(pl.col("share at the start") == start).to_dicts()
         only_foragers, only_trackers = list(row.values())[8:10]
         assert lost == (only_trackers if start < 0.5 else only_foragers)
+    lines = {0.05: [], 0.95: []}
+    for row in worlds.filter(pl.col("foragers").is_in(list(lines))).iter_rows(named=True):
+        share = np.array([row["start"], row["end"]])
+        time, count = np.arange(2), np.stack([share, 1 - share], axis=1)
+        lines[row["foragers"]].append(
+            Lines(row["seed"], time, count, time.astype(float), np.zeros(0), np.zeros(0), ended=row["died out"])
+        )
+    table = verdict_table("made_up", mating.invasion_tests(lines), named=mating.NAMED).rows
+    assert table["answer"].to_list() == [OPEN, OPEN]
+    for row in table.iter_rows(named=True):
+        assert re.search(rf"open: \+{row['effect']:.3f}[^|]*\(p {row['p (Holm)']:.2f}\)", page)
     rare = worlds.filter(pl.col("foragers").is_in([0.05, 0.95]))
     assert f"in {rare['end'].is_in([0.0, 1.0]).sum()} of {rare.height}" in page
     slope, crossing = pl.read_csv(RESULTS / "mating" / "frequency.csv").iter_rows(named=True)

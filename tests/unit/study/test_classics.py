@@ -18,14 +18,7 @@ from hedon_studies.lifespan_and_plasticity.study import HAZARDS, control_rows, d
 from hedon_studies.mating_strategies.study import COMMON, RARE, cluster_test, invasion_tests, world_rows
 from hedon_studies.optimal_reward import study as optimal
 from hedon_studies.optimal_reward.study import FREE, GATED, draw_intake
-from hedon_studies.rule import (
-    NO,
-    OPEN,
-    YES,
-    count_test,
-    mean_test,
-    verdict_table,
-)
+from hedon_studies.rule import NO, OPEN, YES, count_test, mean_test, verdict_table
 from hedon_studies.two_needs import study as needs
 from hedon_studies.two_needs.study import ADDITIVE, ONE, PAID, TWO, draw_changes
 
