@@ -7,7 +7,7 @@ HISTORY = FigureKind(
     "When did they evolve, and how much of it is drift?",
     "Mean weight of the living over time: thin lines are worlds, the thick line is their mean. The gray band shows "
     "where drift alone would leave this weight in 95 % of worlds; a weight that stays within it may have drifted. "
-    "Below, the neutral genes. A cross marks where a world died out.",
+    "The last panel shows the neutral genes. A cross marks where a world died out.",
 )
 WORLD = FigureKind(
     "world",
