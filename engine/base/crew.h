@@ -84,22 +84,6 @@ class Alone {
     return n;
   }
 
-  /// Links the items of each key to a list, in the order of i in [0, count).
-  /// keys      how many there are
-  /// head      (keys) first item of each key; -1 on entry
-  /// next      of each item, -1 at the end of its list
-  /// key(i)    -1 for none
-  /// item(i)   and rank(item), which is i again
-  template <class Key, class Item, class Rank>
-  HEDON_INLINE void link(int32_t count, int32_t, int32_t* head, int32_t* next, Key&& key, Item&& item, Rank&&) const {
-    for (int32_t i = count - 1; i >= 0; --i) {
-      const int32_t k = key(i);
-      if (k < 0) continue;
-      next[item(i)] = head[k];
-      head[k] = item(i);
-    }
-  }
-
   /// Sorts by key: calls place(i, at, key) for each i in [0, count) that has one. Equal ones keep their order.
   /// start    (keys + 1) becomes the first place of each key, and the number of all
   /// work     (count); key(i) may read from work[i]

@@ -92,7 +92,7 @@ class Team {
     once([&] { body(Alone{}); });
   }
 
-  /// The scratch memory of a step, which blocks of a device keep closer to their threads: see `cuda/stage.h`.
+  /// The scratch memory of a step. Blocks of a device copy it to their shared memory: see `cuda/stage.h`.
   template <class Scratch, class List>
   const Scratch& stage(const Scratch& scratch, const List&) const {
     return scratch;

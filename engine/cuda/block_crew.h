@@ -50,33 +50,10 @@ class BlockCrew {
     });
   }
 
-  template <class Key, class Item, class Rank>
-  HEDON_INLINE void link(int32_t count, int32_t keys, int32_t* head, int32_t* next, Key&& key, Item&& item,
-                         Rank&& rank) const {
-    each(0, count, [&](int32_t i) {
-      const int32_t k = key(i);
-      if (k >= 0) next[item(i)] = thread_exchange(head[k], item(i));
-    });
-    // They arrived in arbitrary order.
-    each(0, keys, [&](int32_t k) {
-      int32_t left = head[k];
-      head[k] = -1;
-      while (left >= 0) {
-        const int32_t one = left;
-        left = next[one];
-        int32_t* at = &head[k];
-        while (*at >= 0 && rank(*at) < rank(one)) at = &next[*at];
-        next[one] = *at;
-        *at = one;
-      }
-    });
-  }
-
   template <class Key, class Place>
   HEDON_INLINE void sort(int32_t count, int32_t keys, int32_t* start, int32_t* work, Key&& key, Place&& place) const {
-    const auto same = [](int32_t i) { return i; };
     each(0, keys, [&](int32_t k) { start[k] = -1; });
-    link(count, keys, start, work, key, same, same);
+    link(count, keys, start, work, key);
     const auto size = [&](int32_t k) {
       int32_t items = 0;
       for (int32_t i = start[k]; i >= 0; i = work[i]) ++items;
@@ -91,6 +68,28 @@ class BlockCrew {
   }
 
  private:
+  /// Links the i of each key to a list, in ascending order: head[k] is the first, -1 on entry; next[i], -1 at the end.
+  template <class Key>
+  HEDON_INLINE void link(int32_t count, int32_t keys, int32_t* head, int32_t* next, Key&& key) const {
+    each(0, count, [&](int32_t i) {
+      const int32_t k = key(i);
+      if (k >= 0) next[i] = thread_exchange(head[k], i);
+    });
+    // They arrived in arbitrary order.
+    each(0, keys, [&](int32_t k) {
+      int32_t left = head[k];
+      head[k] = -1;
+      while (left >= 0) {
+        const int32_t one = left;
+        left = next[one];
+        int32_t* at = &head[k];
+        while (*at >= 0 && *at < one) at = &next[*at];
+        next[one] = *at;
+        *at = one;
+      }
+    });
+  }
+
   /// Calls body(i, n, size(i)) for i in [0, count), where n is the sum of size(j) over all j < i; returns the sum over
   /// all.
   template <class Size, class Body>

@@ -96,16 +96,17 @@ template <class Crew>
 HEDON_FN void find_body_pairs(const Crew& crew, const PhysicsState& state, const BodyTable& table,
                               const PhysicsScratch& scratch, const int32_t* order, int32_t count, float skin,
                               PairBuilder& pairs) {
-  const BodyState& bodies = state.bodies;
   pairs.collect(crew, count, scratch.work, [&](int32_t rank, auto&& add) {
     const int32_t slot = order[rank];
     const float radius = radius_of(state, table, slot);
-    const float x = bodies.x[slot], y = bodies.y[slot];
-    for_each_near(state.body_grid, x, y, radius + table.max_radius() + skin, [&](int32_t other) {
-      const float dx = bodies.x[other] - x, dy = bodies.y[other] - y;
-      const float reach = radius + radius_of(state, table, other) + skin;
-      if (dx * dx + dy * dy < reach * reach && scratch.rank[other] > rank && table.collide(slot, other))
-        add(scratch.rank[other]);
+    const Vec2 center{state.bodies.x[slot], state.bodies.y[slot]};
+    const float widest = radius + table.max_radius() + skin;
+    for_each_near(state.body_grid, scratch.bodies_by_cell, center, widest, [&](int32_t other, Vec2 place) {
+      // One branch: each condition holds for about every other body, which cannot be predicted.
+      const float squared = squared_length(place - center);
+      if (!((squared < widest * widest) & (other > rank))) return;
+      const float reach = radius + radius_of(state, table, order[other]) + skin;
+      if (squared < reach * reach && table.collide(slot, order[other])) add(other);
     });
   });
 }
@@ -114,14 +115,12 @@ template <class Crew>
 HEDON_FN void find_circle_pairs(const Crew& crew, const PhysicsState& state, const BodyTable& table,
                                 const PhysicsScratch& scratch, const int32_t* order, int32_t count, float skin,
                                 PairBuilder& pairs) {
-  const StaticCircles& circles = state.circles;
   pairs.collect(crew, count, scratch.work, [&](int32_t rank, auto&& add) {
     const int32_t slot = order[rank];
     const float reach = radius_of(state, table, slot) + table.circle_radius + skin;
-    const float x = state.bodies.x[slot], y = state.bodies.y[slot];
-    for_each_near(state.circle_grid, x, y, reach, [&](int32_t circle) {
-      const float dx = circles.x[circle] - x, dy = circles.y[circle] - y;
-      if (dx * dx + dy * dy < reach * reach && table.collides_with_circle(slot, circle)) add(circle);
+    const Vec2 center{state.bodies.x[slot], state.bodies.y[slot]};
+    for_each_near(state.circle_grid, scratch.circles_by_cell, center, reach, [&](int32_t circle, Vec2 place) {
+      if (squared_length(place - center) < reach * reach && table.collides_with_circle(slot, circle)) add(circle);
     });
   });
 }
@@ -129,7 +128,7 @@ HEDON_FN void find_circle_pairs(const Crew& crew, const PhysicsState& state, con
 /// Follows a wall through the rows of cells; calls add(rank) for the bodies on both sides of it.
 template <class Add>
 HEDON_FN void find_bodies_at(const PhysicsState& state, const BodyTable& table, const PhysicsScratch& scratch,
-                             float skin, int32_t wall, Add&& add) {
+                             const int32_t* order, float skin, int32_t wall, Add&& add) {
   const Grid& grid = state.body_grid;
   const float margin = table.max_radius() + skin + 0.5f;  // covers the rounding of cells and cuts
   const Vec2 a = state.walls[wall].a, b = state.walls[wall].b;
@@ -146,10 +145,10 @@ HEDON_FN void find_bodies_at(const PhysicsState& state, const BodyTable& table, 
     const float t1 = top < high.y && rise > 0.0f ? (top - low.y) / rise : 1.0f;
     const float x0 = low.x + t0 * (high.x - low.x), x1 = low.x + t1 * (high.x - low.x);
     const float middle = (static_cast<float>(row) + 0.5f) * cell;
-    for_each_in(grid, (x0 < x1 ? x0 : x1) - margin, middle, (x0 < x1 ? x1 : x0) + margin, middle, [&](int32_t slot) {
-      const Vec2 center{state.bodies.x[slot], state.bodies.y[slot]};
-      const float reach = radius_of(state, table, slot) + skin;
-      if (squared_length(nearest_on_segment(a, b, center) - center) < reach * reach) add(scratch.rank[slot]);
+    const float left = (x0 < x1 ? x0 : x1) - margin, right = (x0 < x1 ? x1 : x0) + margin;
+    for_each_in(grid, scratch.bodies_by_cell, left, middle, right, middle, [&](int32_t rank, Vec2 center) {
+      const float reach = radius_of(state, table, order[rank]) + skin;
+      if (squared_length(nearest_on_segment(a, b, center) - center) < reach * reach) add(rank);
     });
   }
 }
@@ -172,22 +171,18 @@ HEDON_FN void fill_list(const Crew& crew, const PairList& list, const PairBuilde
 }
 
 /// Fills the grids with all bodies of the order and all present circles.
-/// scratch.rank   of each body
 template <class Crew>
 HEDON_FN void fill_grids(const Crew& crew, const PhysicsState& state, const PhysicsScratch& scratch,
                          const int32_t* order, int32_t count) {
   const StaticCircles& circles = state.circles;
-  const auto body_cell = [&](int32_t slot) {
-    return cell_of(state.body_grid, state.bodies.x[slot], state.bodies.y[slot]);
-  };
-  const auto circle_cell = [&](int32_t slot) {
-    return circles.present[slot] ? cell_of(state.circle_grid, circles.x[slot], circles.y[slot]) : -1;
-  };
-  const auto same = [](int32_t slot) { return slot; };
+  const BodyState& bodies = state.bodies;
   fill_grid(
-      crew, state.body_grid, count, body_cell, [&](int32_t rank) { return order[rank]; },
-      [&](int32_t slot) { return scratch.rank[slot]; });
-  fill_grid(crew, state.circle_grid, static_cast<int32_t>(circles.x.count), circle_cell, same, same);
+      crew, state.body_grid, scratch.bodies_by_cell, count, [&](int32_t rank) { return order[rank]; },
+      [](int32_t) { return true; }, [&](int32_t slot) { return Vec2{bodies.x[slot], bodies.y[slot]}; });
+  fill_grid(
+      crew, state.circle_grid, scratch.circles_by_cell, static_cast<int32_t>(circles.x.count),
+      [](int32_t slot) { return slot; }, [&](int32_t slot) { return circles.present[slot] != 0; },
+      [&](int32_t slot) { return Vec2{circles.x[slot], circles.y[slot]}; });
 }
 
 /// Lists all pairs with a separation below `skin` [u]. Replaces the old list, but keeps its impulses.
@@ -199,7 +194,6 @@ HEDON_FN void build_neighbors(const Crew& crew, const PhysicsState& state, const
   const NeighborList& list = state.neighbors;
   NeighborHead& head = list.head[0];
   crew.each(0, count, [&](int32_t rank) {
-    scratch.rank[order[rank]] = rank;
     scratch.parent[rank] = rank;
     scratch.work[rank] = 0;
   });
@@ -209,7 +203,7 @@ HEDON_FN void build_neighbors(const Crew& crew, const PhysicsState& state, const
   find_circle_pairs(crew, state, table, scratch, order, count, skin, circles);
   walls.count = crew.collect(
       static_cast<int32_t>(state.walls.count),
-      [&](int32_t wall, auto&& add) { find_bodies_at(state, table, scratch, skin, wall, add); },
+      [&](int32_t wall, auto&& add) { find_bodies_at(state, table, scratch, order, skin, wall, add); },
       [&](int32_t at, int32_t wall, int32_t rank) { walls.keep(at, rank, wall); }, [](int32_t, int32_t, int32_t) {});
   for (const PairBuilder* pairs : {&bodies, &circles, &walls}) {
     if (pairs->count <= pairs->room()) continue;

@@ -102,7 +102,8 @@ struct BatchReport {
 };
 
 struct PhysicsScratch {
-  Array<int32_t> rank;         ///< of each slot in the caller's order
+  CellOrder bodies_by_cell;    ///< the grids as they were filled for the last build
+  CellOrder circles_by_cell;   ///< with slots as ranks
   Array<int32_t> parent;       ///< union-find over ranks
   Array<int32_t> work;         ///< pairs and bodies of the island, by the rank of its root
   Array<int32_t> batch;        ///< of the island, by the rank of its root
@@ -125,9 +126,9 @@ struct PhysicsScratch {
   Array<StaticContact> static_contacts;  ///< with circles, then with walls
   Array<BatchReport> reports;            ///< (MAX_BATCHES)
 
-  HEDON_FIELDS(PhysicsScratch, rank, parent, work, batch, new_index, position, motion, change, angle, colors, active,
-               color, color_start, bodies, circles, walls, body_class, shape, body_contacts, mixed_contacts,
-               static_contacts, reports)
+  HEDON_FIELDS(PhysicsScratch, bodies_by_cell, circles_by_cell, parent, work, batch, new_index, position, motion,
+               change, angle, colors, active, color, color_start, bodies, circles, walls, body_class, shape,
+               body_contacts, mixed_contacts, static_contacts, reports)
 };
 
 /// The sizes of the arrays.
@@ -229,10 +230,19 @@ void visit_state(PhysicsState& state, const PhysicsCapacity& capacity, Visit&& v
   visit_pairs(list.walls, capacity.bodies, capacity.wall_pairs, visit);
 }
 
+template <class Visit>
+void visit_cells(CellOrder& order, const PhysicsCapacity& capacity, int64_t items, Visit&& visit) {
+  visit("start", order.start, int64_t{capacity.columns} * capacity.rows + 1);
+  visit("rank", order.rank, items);
+  visit("position", order.position, items);
+  visit("work", order.work, items);
+}
+
 /// Calls visit(name, array, count) for each array that is needed only within a step.
 template <class Visit>
 void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Visit&& visit) {
-  visit("rank", scratch.rank, capacity.bodies);
+  visit_cells(scratch.bodies_by_cell, capacity, capacity.bodies, visit);
+  visit_cells(scratch.circles_by_cell, capacity, capacity.circles, visit);
   visit("parent", scratch.parent, capacity.bodies);
   visit("work", scratch.work, capacity.bodies);
   visit("batch", scratch.batch, capacity.bodies);
