@@ -59,7 +59,6 @@ struct BodyTable {
     while (circle >= first_circle[c + 1]) ++c;
     return c;
   }
-  HEDON_FN float radius(int32_t slot) const { return shape[body_class(slot)].radius; }
   HEDON_FN bool collide(int32_t slot, int32_t other) const {
     return (meets_bodies[body_class(slot)] >> body_class(other) & 1u) != 0;
   }

@@ -54,53 +54,28 @@ struct AlikeBodies {
   HEDON_FN static BodyContact* contacts(const PhysicsScratch& scratch) { return scratch.body_contacts.data; }
 };
 
-/// Bodies of several classes, by their index in the list.
+/// Bodies of several shapes, by their index in the list.
 struct MixedBodies {
   using Contact = MixedContact;
   const BodyTable& table;
-  uint8_t* body_class;
+  const PhysicsState& state;
+  BodyShape* shape;  ///< by index
+  float lightest;    ///< smallest possible mass of a body
 
-  HEDON_FN MixedBodies(const BodyTable& classes, const PhysicsState&, const PhysicsScratch& scratch)
-      : table(classes), body_class(scratch.body_class.data) {}
+  HEDON_FN MixedBodies(const BodyTable& classes, const PhysicsState& now, const PhysicsScratch& scratch)
+      : table(classes), state(now), shape(scratch.shape.data), lightest(classes.min_mass()) {}
 
-  /// Stores the class of a body; call it first in each step.
-  HEDON_FN void note(int32_t index, int32_t slot) const {
-    body_class[index] = static_cast<uint8_t>(table.body_class(slot));
-  }
-  HEDON_FN const BodyShape& shape(int32_t index) const { return table.shape[body_class[index]]; }
-  HEDON_FN float radius(int32_t index) const { return shape(index).radius; }
-  HEDON_FN float inverse_mass(int32_t index) const { return 1.0f / shape(index).mass; }
-  HEDON_FN float inverse_inertia(int32_t index) const { return 1.0f / shape(index).inertia; }
-  HEDON_FN float inverse_gyration(int32_t index) const { return shape(index).mass / shape(index).inertia; }
+  /// Copies the shape of a body; call it first in each step.
+  HEDON_FN void note(int32_t index, int32_t slot) const { shape[index] = shape_of(state, table, slot); }
+  HEDON_FN float radius(int32_t index) const { return shape[index].radius; }
+  HEDON_FN float inverse_mass(int32_t index) const { return 1.0f / shape[index].mass; }
+  HEDON_FN float inverse_inertia(int32_t index) const { return 1.0f / shape[index].inertia; }
+  HEDON_FN float inverse_gyration(int32_t index) const { return shape[index].mass / shape[index].inertia; }
   /// Change of velocity per impulse: the mass of the first class divided by the body's mass.
-  HEDON_FN float weight(int32_t index) const { return table.shape[0].mass / shape(index).mass; }
-  HEDON_FN static float for_lightest(int32_t, float squared_force) { return squared_force; }
-  HEDON_FN static MixedContact* contacts(const PhysicsScratch& scratch) { return scratch.mixed_contacts.data; }
-};
-
-/// Bodies with individual shapes, by their index in the list.
-struct OwnBodies {
-  using Contact = MixedContact;
-  float unit;      ///< unit of mass for impulses
-  float lightest;  ///< smallest possible mass of a body
-  const BodyShape* by_slot;
-  BodyShape* by_index;
-
-  HEDON_FN OwnBodies(const BodyTable& table, const PhysicsState& state, const PhysicsScratch& scratch)
-      : unit(table.shape[0].mass),
-        lightest(table.min_mass()),
-        by_slot(state.shape.data),
-        by_index(scratch.shape.data) {}
-
-  HEDON_FN void note(int32_t index, int32_t slot) const { by_index[index] = by_slot[slot]; }
-  HEDON_FN float radius(int32_t index) const { return by_index[index].radius; }
-  HEDON_FN float inverse_mass(int32_t index) const { return 1.0f / by_index[index].mass; }
-  HEDON_FN float inverse_inertia(int32_t index) const { return 1.0f / by_index[index].inertia; }
-  HEDON_FN float inverse_gyration(int32_t index) const { return by_index[index].mass / by_index[index].inertia; }
-  HEDON_FN float weight(int32_t index) const { return unit / by_index[index].mass; }
+  HEDON_FN float weight(int32_t index) const { return table.shape[0].mass / shape[index].mass; }
   /// The squared force that would push the lightest possible body as much as this one does the body.
   HEDON_FN float for_lightest(int32_t index, float squared_force) const {
-    const float ratio = lightest / by_index[index].mass;
+    const float ratio = lightest / shape[index].mass;
     return squared_force * ratio * ratio;
   }
   HEDON_FN static MixedContact* contacts(const PhysicsScratch& scratch) { return scratch.mixed_contacts.data; }

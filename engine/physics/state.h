@@ -76,8 +76,11 @@ struct PhysicsState {
   HEDON_FIELDS(PhysicsState, bodies, shape, circles, walls, outer_walls, unused, body_grid, circle_grid, neighbors)
 };
 
+HEDON_FN const BodyShape& shape_of(const PhysicsState& state, const BodyTable& table, int32_t slot) {
+  return table.own != 0 ? state.shape[slot] : table.shape[table.body_class(slot)];
+}
 HEDON_FN float radius_of(const PhysicsState& state, const BodyTable& table, int32_t slot) {
-  return table.own != 0 ? state.shape[slot].radius : table.radius(slot);
+  return shape_of(state, table, slot).radius;
 }
 
 /// Pairs found while a list is built, and the impulses of the listed pairs while a step is tried.
@@ -95,7 +98,7 @@ struct BatchReport {
   float squared_moved;  ///< largest squared distance of a body from its position at the last build; infinite if not
                         ///< finite
   float squared_speed;  ///< largest squared speed at the end
-  float squared_force;  ///< largest squared force; if bodies have individual shapes, the equivalent for the lightest
+  float squared_force;  ///< largest squared force; if bodies differ, the equivalent for the lightest
   float unused;
 
   HEDON_FIELDS(BatchReport, squared_moved, squared_speed, squared_force, unused)
@@ -119,16 +122,15 @@ struct PhysicsScratch {
   PairScratch bodies;
   PairScratch circles;
   PairScratch walls;
-  Array<uint8_t> body_class;             ///< by index; none if all bodies are of one class
-  Array<BodyShape> shape;                ///< by index; none if bodies have the shapes of their classes
-  Array<BodyContact> body_contacts;      ///< none if there are several classes
-  Array<MixedContact> mixed_contacts;    ///< none if there is one class
+  Array<BodyShape> shape;                ///< by index; none if bodies are alike
+  Array<BodyContact> body_contacts;      ///< none if bodies differ
+  Array<MixedContact> mixed_contacts;    ///< none if bodies are alike
   Array<StaticContact> static_contacts;  ///< with circles, then with walls
   Array<BatchReport> reports;            ///< (MAX_BATCHES)
 
   HEDON_FIELDS(PhysicsScratch, bodies_by_cell, circles_by_cell, parent, work, batch, new_index, position, motion,
-               change, angle, colors, active, color, color_start, bodies, circles, walls, body_class, shape,
-               body_contacts, mixed_contacts, static_contacts, reports)
+               change, angle, colors, active, color, color_start, bodies, circles, walls, shape, body_contacts,
+               mixed_contacts, static_contacts, reports)
 };
 
 /// The sizes of the arrays.
@@ -259,8 +261,7 @@ void visit_scratch(PhysicsScratch& scratch, const PhysicsCapacity& capacity, Vis
   visit_arrays(scratch.circles, capacity.circle_pairs, visit);
   visit_arrays(scratch.walls, capacity.wall_pairs, visit);
   const bool mixed = capacity.mixed != 0;
-  visit("body_class", scratch.body_class, mixed ? capacity.bodies : 0);
-  visit("shape", scratch.shape, capacity.own != 0 ? capacity.bodies : 0);
+  visit("shape", scratch.shape, mixed ? capacity.bodies : 0);
   visit("body_contacts", scratch.body_contacts, mixed ? 0 : capacity.body_pairs);
   visit("mixed_contacts", scratch.mixed_contacts, mixed ? capacity.body_pairs : 0);
   visit("static_contacts", scratch.static_contacts, capacity.circle_pairs + capacity.wall_pairs);
@@ -277,15 +278,15 @@ HEDON_FN void set_grid_shape(PhysicsState& state, const PhysicsCapacity& capacit
   }
 }
 
+/// Call this after a change of the order, a position, a circle or a wall: the next step builds its list again.
+HEDON_FN void mark_stale(const PhysicsState& state) { state.neighbors.head[0].stale = 1; }
+
 HEDON_FN void init_physics(PhysicsState& state, const PhysicsCapacity& capacity) {
   set_grid_shape(state, capacity);
   clear_grid(Alone{}, state.body_grid);
   clear_grid(Alone{}, state.circle_grid);
   for (int64_t slot = 0; slot < state.neighbors.index.count; ++slot) state.neighbors.index[slot] = -1;
-  state.neighbors.head[0].stale = 1;
+  mark_stale(state);
 }
-
-/// Call this after a change of the order, a position, a circle or a wall: the next step builds its list again.
-HEDON_FN void mark_stale(const PhysicsState& state) { state.neighbors.head[0].stale = 1; }
 
 }  // namespace hedon

@@ -187,10 +187,8 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
         try_batch<Solver, Bodies>(crew, config, table, constants, state, *work, force, limit * limit, batch, visitor);
       };
       const bool sequential = config.solver == PhysicsSolver::sequential;
-      if (table.own != 0)
-        sequential ? attempt.template operator()<SequentialSolver, OwnBodies>()
-                   : attempt.template operator()<JacobiSolver, OwnBodies>();
-      else if (table.classes == 1)
+      const bool alike = table.classes == 1 && table.own == 0;
+      if (alike)
         sequential ? attempt.template operator()<SequentialSolver, AlikeBodies>()
                    : attempt.template operator()<JacobiSolver, AlikeBodies>();
       else
