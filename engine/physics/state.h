@@ -40,12 +40,12 @@ struct NeighborHead {
   int32_t stale;    ///< 1: build again before the next step; the caller sets it too
   float skin;       ///< of the last build [u]
   float free_path;  ///< distance that the fastest body could move in the last step [u]
-  int32_t unused;
-  int64_t builds;                        ///< so far
-  int64_t repeats;                       ///< steps tried again because a body moved too far for the skin
+  int32_t moved;    ///< lists in a row, each with few pairs, that only motion made stale; at most UNCHANGED_LISTS
+  int64_t builds;   ///< so far
+  int64_t repeats;  ///< steps tried again because a body moved too far for the skin
   int32_t batch_start[MAX_BATCHES + 2];  ///< first index of each batch; the last entry is not used
 
-  HEDON_FIELDS(NeighborHead, bodies, batches, stale, skin, free_path, unused, builds, repeats, batch_start)
+  HEDON_FIELDS(NeighborHead, bodies, batches, stale, skin, free_path, moved, builds, repeats, batch_start)
 };
 
 /// The pairs that may touch, and the bodies in the order in which the physics processes them (their *index*).
@@ -279,7 +279,10 @@ HEDON_FN void set_grid_shape(PhysicsState& state, const PhysicsCapacity& capacit
 }
 
 /// Call this after a change of the order, a position, a circle or a wall: the next step builds its list again.
-HEDON_FN void mark_stale(const PhysicsState& state) { state.neighbors.head[0].stale = 1; }
+HEDON_FN void mark_stale(const PhysicsState& state) {
+  state.neighbors.head[0].stale = 1;
+  state.neighbors.head[0].moved = 0;
+}
 
 HEDON_FN void init_physics(PhysicsState& state, const PhysicsCapacity& capacity) {
   set_grid_shape(state, capacity);

@@ -92,6 +92,12 @@ HEDON_FN void commit_pairs(const Crew& crew, const PhysicsState& state, const Ph
   store_pairs(list.walls, scratch.walls, range.first_wall_pair, range.last_wall_pair);
 }
 
+/// Skin for a new list, in paths of the fastest body in a step. With 2.5, a list lasts for one step, even if bodies
+/// become faster by a fifth (`SKIN_SHARE`); with 4.5 it lasts for two. That is worth its additional pairs if changes
+/// are rare, since each makes it stale: after four lists in a row without one.
+inline constexpr int32_t UNCHANGED_LISTS = 4;
+HEDON_FN float skin_per_path(const NeighborHead& head) { return head.moved == UNCHANGED_LISTS ? 4.5f : 2.5f; }
+
 /// Largest squared distance of a batch's bodies from their positions at the last build; infinite if one is not finite.
 template <class Bodies, class Crew>
 HEDON_FN float squared_moved(const Batch<Bodies, Crew>& batch) {
@@ -167,7 +173,7 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
   NeighborHead& head = state.neighbors.head[0];
   const SolverConstants constants = make_constants(config);
   bool build = head.stale != 0;
-  const float spare = 2.5f * head.free_path;
+  const float spare = skin_per_path(head) * head.free_path;
   const float usual_skin = config.neighbor_skin > spare ? config.neighbor_skin : spare;
   float skin = usual_skin;
   BatchReport report{};
@@ -225,6 +231,12 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
     if (batch > 0) return;
     crew.once([&] {
       head.stale = stale;
+      // Where bodies have many neighbors, a list might have no room for those of a wide skin.
+      const bool sparse = state.neighbors.bodies.start[head.bodies] <= 4 * head.bodies;
+      if (!sparse)
+        head.moved = 0;
+      else if (head.moved < UNCHANGED_LISTS)
+        head.moved += stale;
       head.free_path = free_path;
       head.repeats += repeat;
     });

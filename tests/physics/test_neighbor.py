@@ -68,6 +68,38 @@ def test_the_list_is_reused_while_it_is_valid(reference):
     assert 10 < reference[2]["builds"] < 80
 
 
+def drifting(spacing):
+    """Bodies in rows that all drift at 5 u per step, too far from walls to meet one, and do not push one another."""
+    places = [[100.0 + spacing * column, 100.0 + spacing * row] for row in range(8) for column in range(8)]
+    settings = {"linear_damping": 0.0, "velocity_passes": 0, "position_passes": 0}
+    scene = make_scene(places, size=(4800.0, 3600.0), **settings)
+    scene.array("velocity_x")[:] = 10.0
+    scene.step(8)
+    return scene
+
+
+@pytest.mark.parametrize(("spacing", "steps_per_list"), [(45.0, 2), (16.0, 1)])
+def test_a_list_lasts_for_two_steps_where_bodies_have_few_neighbors(spacing, steps_per_list):
+    scene = drifting(spacing)
+    before = scene.counters()
+    scene.step(20)
+    after = scene.counters()
+    assert after["builds"] - before["builds"] == 20 // steps_per_list
+    assert after["repeats"] == before["repeats"]
+
+
+def test_a_list_that_would_not_last_anyway_is_not_wide():
+    scene = drifting(45.0)
+    skins = []
+    for _ in range(8):
+        scene.set_stale()
+        scene.step()
+        skins.append(scene.counters()["skin"])
+    assert skins == pytest.approx([2.5 * 5.0] * 8)
+    scene.step(8)
+    assert scene.counters()["skin"] == pytest.approx(4.5 * 5.0)
+
+
 def test_list_holds_every_overlap_of_a_crowd():
     """Compared with all pairs in float64, in each of 500 steps of 200 bodies."""
     scene = crowd(11, 200, 60)
