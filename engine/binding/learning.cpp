@@ -124,8 +124,8 @@ struct LearnerArrays {
   }
 };
 
-BytesOut pack(FloatRows ray, nb::ndarray<const uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu> ray_type,
-              nb::ndarray<const uint64_t, nb::c_contig, nb::device::cpu> touch, FloatRows dense) {
+BytesOut pack_all(FloatRows ray, nb::ndarray<const uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu> ray_type,
+                  nb::ndarray<const uint64_t, nb::c_contig, nb::device::cpu> touch, FloatRows dense) {
   const size_t count = ray.shape(0), rays = ray.shape(1), words = touch.ndim() == 2 ? touch.shape(1) : 1,
                width = dense.shape(1);
   constexpr size_t NARROW = MAX_DENSE, MOST = MAX_DENSE + MAX_EXTRA_DENSE;
@@ -259,7 +259,7 @@ void bind_learning(nb::module_& module) {
       "param_count", [](ObservationSizes sizes) { return to_shape(sizes).size(); }, nb::arg("shape"),
       "Floats of a network's flat parameter array; `shape` is (rays, types, touches, dense).");
   learning.def(
-      "pack", pack, nb::arg("ray"), nb::arg("ray_type"), nb::arg("touch"), nb::arg("dense"),
+      "pack", pack_all, nb::arg("ray"), nb::arg("ray_type"), nb::arg("touch"), nb::arg("dense"),
       "Packed observations (n, 192), or (n, 256) if they are wide, from reading + 1 and type of each ray, touch bits "
       "(n, 1 or 2) and dense entries.");
   learning.def("unpack", unpack_all, nb::arg("shape"), nb::arg("observation"), "Full observations (n, size).");

@@ -15,17 +15,17 @@ namespace nb = nanobind;
 namespace hedon {
 namespace {
 
-using FloatsIn = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using FloatsOut = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
+using DoublesIn = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using DoublesOut = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
 
-FloatsOut own(std::vector<double> values) {
+DoublesOut own(std::vector<double> values) {
   auto* held = new std::vector<double>(std::move(values));
   nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-  return FloatsOut(held->data(), {held->size()}, owner);
+  return DoublesOut(held->data(), {held->size()}, owner);
 }
 
 template <class F>
-FloatsOut map(const FloatsIn& x, F f) {
+DoublesOut map(const DoublesIn& x, F f) {
   std::vector<double> out(x.shape(0));
   for (size_t i = 0; i < out.size(); ++i) out[i] = f(x.data()[i]);
   return own(std::move(out));
@@ -66,18 +66,18 @@ void bind_random(nb::module_& module) {
       nb::arg("seed"), nb::arg("form"), nb::arg("count"), "`count` draws of a distribution.");
   random.def(
       "atan2",
-      [](FloatsIn y, FloatsIn x) {
+      [](DoublesIn y, DoublesIn x) {
         if (y.shape(0) != x.shape(0)) throw nb::value_error("y and x must be equally long");
         std::vector<double> out(y.shape(0));
         for (size_t i = 0; i < out.size(); ++i) out[i] = atan2_double(y.data()[i], x.data()[i]);
         return own(std::move(out));
       },
       nb::arg("y"), nb::arg("x"));
-  random.def("exp", [](FloatsIn x) { return map(x, exp_double); }, nb::arg("x"));
-  random.def("log", [](FloatsIn x) { return map(x, log_double); }, nb::arg("x"));
+  random.def("exp", [](DoublesIn x) { return map(x, exp_double); }, nb::arg("x"));
+  random.def("log", [](DoublesIn x) { return map(x, log_double); }, nb::arg("x"));
   random.def(
       "sin",
-      [](FloatsIn x) {
+      [](DoublesIn x) {
         return map(x, [](double v) {
           double s, c;
           sincos_double(v, &s, &c);
@@ -87,7 +87,7 @@ void bind_random(nb::module_& module) {
       nb::arg("x"));
   random.def(
       "cos",
-      [](FloatsIn x) {
+      [](DoublesIn x) {
         return map(x, [](double v) {
           double s, c;
           sincos_double(v, &s, &c);

@@ -230,7 +230,7 @@ class PythonFloatMode {
 void bind_simulation(nb::module_& module) {
   using S = PythonSimulation;
   module.def(
-      "read_config", [](nb::dict config) { return unfill(to_config<Config>(config)); }, nb::arg("config"),
+      "read_config", [](nb::dict config) { return from_config(to_config<Config>(config)); }, nb::arg("config"),
       nb::sig("def read_config(config: dict[str, typing.Any]) -> dict[str, typing.Any]"),
       "A config as the engine has read it.");
   module.def(
