@@ -36,7 +36,7 @@ def bench(
     ] = "",
     slots: Annotated[
         str,
-        typer.Option(metavar="N,...", help="Sizes for growth and crowd: 200,2000,20000,100000."),
+        typer.Option(metavar="N,...", help="Sizes for discs, growth and crowd: 200,2000,20000,100000."),
     ] = "",
     kernel: Annotated[str, typer.Option(metavar="NAME", help="One instruction set instead of all.")] = "",
     windows: Annotated[int, typer.Option(help="Timed windows of whole worlds.", min=2, max=10_000)] = 8,
@@ -52,7 +52,8 @@ def bench(
       rays      one agent's rays
       forward   one agent's network, acting
       update    PPO of one learner, on one thread
-      physics   rigid bodies alone
+      physics   the rigid bodies of a populated world
+      discs     a crowd of driven discs, 150 to 20,000
       world     whole worlds with learning, by threads, worlds and instruction sets
       records   writing a run's tables
       startup   from the start of a process to its first step

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks import crowd, device, growth, network, physics, rays, records, rule, startup, value, world
+from benchmarks import crowd, device, discs, growth, network, physics, rays, records, rule, startup, value, world
 from benchmarks.machine import Calibration, calibrate, describe
 from benchmarks.measure import Row, Table
 from benchmarks.plan import Plan, PlanError
@@ -35,7 +35,8 @@ PARTS = {
     "rays": Part("one agent's rays", rays.measure, rays.table),
     "forward": Part("one agent's network, acting", network.measure_forward, network.table_forward),
     "update": Part("PPO of one learner, on one thread", network.measure_update, network.table_update),
-    "physics": Part("rigid bodies alone", physics.measure, physics.table),
+    "physics": Part("the rigid bodies of a populated world", physics.measure, physics.table),
+    "discs": Part("a crowd of driven discs, 150 to 20,000", discs.measure, discs.table),
     "world": Part("whole worlds with learning, by threads, worlds and instruction sets", world.measure, world.table),
     "records": Part("writing a run's tables", records.measure, records.table),
     "startup": Part("from the start of a process to its first step", startup.measure, startup.table),

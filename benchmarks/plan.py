@@ -30,7 +30,7 @@ class Plan:
         threads: Numbers of threads, ascending.
         worlds: Numbers of worlds for each number of threads; None for one world with each number of threads, and one
             world per thread with the largest.
-        slots: Sizes of worlds for `growth`, ascending; None for all sizes.
+        slots: Sizes for `discs`, `growth` and `crowd`, ascending; None for all sizes.
         kernels: Instruction sets, best first.
         windows: Timed windows of whole worlds.
         quick: Whether sizes are tiny: this shows only that the part works; the numbers have no meaning.
@@ -85,7 +85,7 @@ def make_plan(
         preset: A preset or a config file.
         threads: Numbers such as "1,2"; by default 1, 2, 4 and so on to all processors.
         worlds: Numbers such as "1,4".
-        slots: Sizes of worlds of `growth`, such as "200,2000"; by default all.
+        slots: Sizes for `discs`, `growth` and `crowd`, such as "200,2000"; by default all.
         kernel: An instruction set; by default all that this processor has.
         windows: Timed windows.
         quick: Tiny sizes.

@@ -1,5 +1,7 @@
 #include "binding/config.h"
 
+#include <nanobind/stl/string.h>
+
 #include <set>
 #include <string>
 #include <type_traits>

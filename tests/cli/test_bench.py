@@ -71,6 +71,8 @@ def test_the_file_has_a_row_for_each_case(measured):
     for name in ("rays", "forward", "update"):
         assert [row["kernel"] for row in parts[name]] == kernels
     assert [row["threads"] for row in parts["physics"]] == [1, 2]
+    assert [(row["discs"], row["threads"]) for row in parts["discs"]] == [(150, 1), (150, 2)]
+    assert all(0 < row["rebuilds_per_step"] <= 1 for row in parts["discs"])
     assert [(row["threads"], row["worlds"]) for row in parts["world"][:3]] == [(1, 1), (2, 1), (2, 2)]
     assert [row["kernel"] for row in parts["world"][3:]] == kernels[1:]
     assert [(row["slots"], row["threads"]) for row in parts["growth"]] == [(200, 1), (200, 2), (400, 1), (400, 2)]
@@ -87,8 +89,8 @@ def test_an_unknown_part_gets_the_list_of_parts_and_a_suggestion():
     answer = call("word")
     assert answer.returncode == 2
     assert answer.stderr == (
-        "hedon: 'word' is not a part (there are rays, forward, update, physics, world, records, startup, value, rule, "
-        "device, growth, crowd); did you mean world?\n"
+        "hedon: 'word' is not a part (there are rays, forward, update, physics, discs, world, records, startup, value, "
+        "rule, device, growth, crowd); did you mean world?\n"
     )
 
 
