@@ -16,16 +16,20 @@ from hedon.config.engine import engine_config
 from hedon.config.schema.species import ONLY
 
 SIZES = (150, 2_000, 20_000)
-"""Discs in a world of usual size, and in worlds 13 and 130 times as large."""
+"""Numbers of discs: as many as agents in the baseline, and 13 and 130 times as many."""
 AREA = 700.0
 """Area per disc [u²]: discs of the usual radius cover 45 % of it, so that one in three touches another."""
-PIECE_STEPS = 10
+PIECE_STEPS = 20
 """Steps after which motor forces change."""
-PIECES = 40
+PIECES = 20
 
 
 def measure(plan: Plan, _: Calibration) -> list[Row]:
-    """One row per number of discs and threads; all numbers of threads must give the same bits."""
+    """One row per number of discs and threads; all numbers of threads must give the same bits.
+
+    A list of neighbors lasts for two steps if motors are strong, as in the preset `appetite`, and for three in the
+    baseline, in which slow discs stay within the usual skin.
+    """
     sizes = (SIZES[0],) if plan.quick else (plan.slots or SIZES)
     pieces = 3 if plan.quick else PIECES
     return [row for discs in sizes for row in _rows(plan, discs, pieces)]
@@ -46,6 +50,8 @@ def _rows(plan: Plan, discs: int, pieces: int) -> list[Row]:
     for threads, state in states.items():
         require_finite(f"{discs} discs, {threads} threads", state)
         same = np.array_equal(state, states[plan.threads[0]])
+        side = _side(discs, config.species[ONLY].body.radius)
+        require(bool(((state[:2] > 0) & (state[:2] < side)).all()), f"{discs} discs: some are outside the walls")
         require(same, f"{discs} discs: the state at the end differs between {threads} threads and {plan.threads[0]}")
     return [
         {
@@ -59,11 +65,16 @@ def _rows(plan: Plan, discs: int, pieces: int) -> list[Row]:
     ]
 
 
+def _side(discs: int, radius: float) -> float:
+    """Side of the square arena [u]; there is room for a few discs, too."""
+    return max(math.sqrt(discs * AREA), 8 * radius)
+
+
 def _scene(plan: Plan, discs: int) -> Any:
     """Discs at rest at random places of a grid, with random headings."""
     config = plan.config()
     body = config.species[ONLY].body
-    side = math.sqrt(discs * AREA)
+    side = _side(discs, body.radius)
     across = math.ceil(math.sqrt(1.2 * discs))
     places = np.linspace(3 * body.radius, side - 3 * body.radius, across)
     rng = np.random.default_rng(2)
@@ -80,6 +91,7 @@ def _scene(plan: Plan, discs: int) -> Any:
         discs,
         0,
         walls,
+        outer_walls=len(walls),
     )
     scene.array("x")[:], scene.array("y")[:] = places[chosen % across], places[chosen // across]
     scene.array("angle")[:] = rng.uniform(0, 2 * math.pi, discs)

@@ -33,7 +33,7 @@ class Fields {
   void finish() const {
     for (auto [key, unused] : dict_) {
       const auto name = nb::cast<std::string>(key);
-      if (!known_.contains(name)) throw nb::key_error((path_ + "." + name + ": unknown").c_str());
+      if (!known_.contains(name)) throw nb::key_error((inner(name.c_str()) + ": unknown").c_str());
     }
   }
 

@@ -2,7 +2,7 @@
 ///
 /// Filling takes time in proportion to the items and cells. Single items can be inserted and removed at any time, so
 /// that a query finds a new item immediately. Items outside the area are in the cells at its edge, and queries find
-/// them there. Filling also sorts the items by cell: many queries at once read that order, not the lists.
+/// them there. Filling also sorts the items by cell, for the queries of a whole neighbor list.
 #pragma once
 
 #include <cstdint>

@@ -102,7 +102,7 @@ HEDON_FN void find_body_pairs(const Crew& crew, const PhysicsState& state, const
     const Vec2 center{state.bodies.x[slot], state.bodies.y[slot]};
     const float widest = radius + table.max_radius() + skin;
     for_each_near(state.body_grid, scratch.bodies_by_cell, center, widest, [&](int32_t other, Vec2 place) {
-      // One branch: each condition holds for about every other body, which cannot be predicted.
+      // One branch, since each condition holds for about half of the bodies and would often be mispredicted.
       const float squared = squared_length(place - center);
       if (!((squared < widest * widest) & (other > rank))) return;
       const float reach = radius + radius_of(state, table, order[other]) + skin;

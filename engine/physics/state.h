@@ -35,14 +35,14 @@ struct PairList {
 
 /// The counts and flags of the neighbor list.
 struct NeighborHead {
-  int32_t bodies;   ///< in the list
-  int32_t batches;  ///< in use
-  int32_t stale;    ///< 1: build again before the next step; the caller sets it too
-  float skin;       ///< of the last build [u]
-  float free_path;  ///< distance that the fastest body could move in the last step [u]
-  int32_t moved;    ///< lists in a row, each with few pairs, that only motion made stale; at most UNCHANGED_LISTS
-  int64_t builds;   ///< so far
-  int64_t repeats;  ///< steps tried again because a body moved too far for the skin
+  int32_t bodies;                        ///< in the list
+  int32_t batches;                       ///< in use
+  int32_t stale;                         ///< 1: build again before the next step; `mark_stale` sets it too
+  float skin;                            ///< of the last build [u]
+  float free_path;                       ///< distance that the fastest body could move in the last step [u]
+  int32_t moved;                         ///< lists in a row that only motion made stale; at most UNCHANGED_LISTS
+  int64_t builds;                        ///< so far
+  int64_t repeats;                       ///< steps tried again because a body moved too far for the skin
   int32_t batch_start[MAX_BATCHES + 2];  ///< first index of each batch; the last entry is not used
 
   HEDON_FIELDS(NeighborHead, bodies, batches, stale, skin, free_path, moved, builds, repeats, batch_start)

@@ -92,11 +92,25 @@ HEDON_FN void commit_pairs(const Crew& crew, const PhysicsState& state, const Ph
   store_pairs(list.walls, scratch.walls, range.first_wall_pair, range.last_wall_pair);
 }
 
-/// Skin for a new list, in paths of the fastest body in a step. With 2.5, a list lasts for one step, even if bodies
-/// become faster by a fifth (`SKIN_SHARE`); with 4.5 it lasts for two. That is worth its additional pairs if changes
-/// are rare, since each makes it stale: after four lists in a row without one.
+/// Lists in a row that only motion made stale, after which a list is made to last for two steps.
 inline constexpr int32_t UNCHANGED_LISTS = 4;
-HEDON_FN float skin_per_path(const NeighborHead& head) { return head.moved == UNCHANGED_LISTS ? 4.5f : 2.5f; }
+
+/// Skins for new lists, in paths of the fastest body in a step: of lists that last for one step, even if bodies become
+/// faster by a fifth (`SKIN_SHARE`), and of lists that last for two. The latter are worth their additional pairs if
+/// changes are rare, since each change makes a list stale.
+inline constexpr float ONE_STEP_SKIN = 2.5f, TWO_STEP_SKIN = 4.5f;
+
+/// Whether a list with another skin would probably fill no more than half of its room. The area in which a body has
+/// neighbors grows by less than the square of the skin's growth.
+HEDON_FN bool fits(const NeighborList& list, float skin) {
+  const NeighborHead& head = list.head[0];
+  const float growth = skin > head.skin ? skin / head.skin : 1.0f;
+  const auto enough = [&](const PairList& pairs) {
+    const float expected = growth * growth * static_cast<float>(pairs.start[head.bodies]);
+    return expected <= 0.5f * static_cast<float>(pairs.first.count);
+  };
+  return enough(list.bodies) && enough(list.circles) && enough(list.walls);
+}
 
 /// Largest squared distance of a batch's bodies from their positions at the last build; infinite if one is not finite.
 template <class Bodies, class Crew>
@@ -156,8 +170,8 @@ inline constexpr int MAX_REPEATS = 12;
 /// One step of the physics. All members of the group call it with the same arguments.
 ///
 /// order    slots of the `count` living bodies. Everything is done in this order, so that results do not depend on
-///          which slots are used. After a change of the order, of circles, walls or positions, the caller sets
-///          `state.neighbors.head[0].stale` (`mark_stale`).
+///          which slots are used. After a change of the order, of circles, walls or positions, the caller calls
+///          `mark_stale`.
 /// force    acts in the first substep
 /// fault    neighbor_overflow; not_finite; contact_outside_skin if even a skin 2^12 times as wide is not enough.
 ///          The bodies are then as they were before the step.
@@ -173,7 +187,7 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
   NeighborHead& head = state.neighbors.head[0];
   const SolverConstants constants = make_constants(config);
   bool build = head.stale != 0;
-  const float spare = skin_per_path(head) * head.free_path;
+  const float spare = (head.moved == UNCHANGED_LISTS ? TWO_STEP_SKIN : ONE_STEP_SKIN) * head.free_path;
   const float usual_skin = config.neighbor_skin > spare ? config.neighbor_skin : spare;
   float skin = usual_skin;
   BatchReport report{};
@@ -231,9 +245,7 @@ HEDON_FN bool physics_step(Group& group, const PhysicsConfig& config, const Body
     if (batch > 0) return;
     crew.once([&] {
       head.stale = stale;
-      // Where bodies have many neighbors, a list might have no room for those of a wide skin.
-      const bool sparse = state.neighbors.bodies.start[head.bodies] <= 4 * head.bodies;
-      if (!sparse)
+      if (!fits(state.neighbors, TWO_STEP_SKIN * free_path))
         head.moved = 0;
       else if (head.moved < UNCHANGED_LISTS)
         head.moved += stale;

@@ -72,7 +72,7 @@ def test_the_file_has_a_row_for_each_case(measured):
         assert [row["kernel"] for row in parts[name]] == kernels
     assert [row["threads"] for row in parts["physics"]] == [1, 2]
     assert [(row["discs"], row["threads"]) for row in parts["discs"]] == [(150, 1), (150, 2)]
-    assert all(0 < row["rebuilds_per_step"] <= 1 for row in parts["discs"])
+    assert all(row["rebuilds_per_step"] > 0 for row in parts["discs"])
     assert [(row["threads"], row["worlds"]) for row in parts["world"][:3]] == [(1, 1), (2, 1), (2, 2)]
     assert [row["kernel"] for row in parts["world"][3:]] == kernels[1:]
     assert [(row["slots"], row["threads"]) for row in parts["growth"]] == [(200, 1), (200, 2), (400, 1), (400, 2)]

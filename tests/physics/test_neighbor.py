@@ -68,28 +68,50 @@ def test_the_list_is_reused_while_it_is_valid(reference):
     assert 10 < reference[2]["builds"] < 80
 
 
-def drifting(spacing):
+def drifting(spacing=45.0, **settings):
     """Bodies in rows that all drift at 5 u per step, too far from walls to meet one, and do not push one another."""
     places = [[100.0 + spacing * column, 100.0 + spacing * row] for row in range(8) for column in range(8)]
-    settings = {"linear_damping": 0.0, "velocity_passes": 0, "position_passes": 0}
+    settings |= {"linear_damping": 0.0, "velocity_passes": 0, "position_passes": 0}
     scene = make_scene(places, size=(4800.0, 3600.0), **settings)
     scene.array("velocity_x")[:] = 10.0
     scene.step(8)
     return scene
 
 
-@pytest.mark.parametrize(("spacing", "steps_per_list"), [(45.0, 2), (16.0, 1)])
-def test_a_list_lasts_for_two_steps_where_bodies_have_few_neighbors(spacing, steps_per_list):
-    scene = drifting(spacing)
+def pairs_within(spacing, gap):
+    """How many pairs of those bodies are closer than `gap` between their surfaces."""
+    places = spacing * np.argwhere(np.ones((8, 8)))
+    apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
+    return (np.count_nonzero(apart < 2 * RADIUS + gap) - len(places)) // 2
+
+
+def test_a_list_that_has_room_lasts_for_two_steps():
+    scene = drifting()
+    assert lists_in(scene, 20) == 10
+    assert scene.counters()["skin"] == pytest.approx(4.5 * 5.0)
+
+
+def test_a_list_without_room_for_the_pairs_of_two_steps_lasts_for_one():
+    # The first step needs a skin of 16 u: it begins with 4 u and doubles that.
+    first, one, two = (pairs_within(17.0, skin) for skin in (16.0, 2.5 * 5.0, 4.5 * 5.0))
+    room = (first + two) // 2
+    assert one < first < room < two
+    scene = drifting(17.0, pair_limit=room)
+    assert lists_in(scene, 20) == 20
+    assert scene.counters()["skin"] == pytest.approx(2.5 * 5.0)
+
+
+def lists_in(scene, steps):
+    """How many lists the steps build, none of which is repeated."""
     before = scene.counters()
-    scene.step(20)
+    scene.step(steps)
     after = scene.counters()
-    assert after["builds"] - before["builds"] == 20 // steps_per_list
     assert after["repeats"] == before["repeats"]
+    return after["builds"] - before["builds"]
 
 
 def test_a_list_that_would_not_last_anyway_is_not_wide():
-    scene = drifting(45.0)
+    scene = drifting()
     skins = []
     for _ in range(8):
         scene.set_stale()
