@@ -25,4 +25,9 @@ struct FixedList {
   HEDON_FN const T& operator[](int i) const { return items[i]; }
 };
 
+template <class T>
+inline constexpr bool IS_FIXED_LIST = false;
+template <class T, int N>
+inline constexpr bool IS_FIXED_LIST<FixedList<T, N>> = true;
+
 }  // namespace hedon

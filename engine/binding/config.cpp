@@ -11,11 +11,6 @@ namespace nb = nanobind;
 namespace hedon {
 namespace {
 
-template <class T>
-struct IsFixedList : std::false_type {};
-template <class T, int N>
-struct IsFixedList<FixedList<T, N>> : std::true_type {};
-
 /// The fields of a dict for one struct. Its functions are the same for all structs, so they are compiled once.
 class Fields {
  public:
@@ -68,7 +63,7 @@ void fill(nb::handle value, T& out, const std::string& path) {
       throw nb::type_error((path + ": wrong type").c_str());
   } else if constexpr (Pair<T>) {
     for_each_part(out, [&](int i, auto& part) { fill(value[i], part, at(path, static_cast<size_t>(i))); });
-  } else if constexpr (IsFixedList<T>::value) {
+  } else if constexpr (IS_FIXED_LIST<T>) {
     const size_t count = nb::len(value);
     if (count > static_cast<size_t>(T::capacity)) throw nb::value_error((path + ": too many items").c_str());
     out.count = static_cast<int32_t>(count);
@@ -91,7 +86,7 @@ nb::object unfill(const T& value) {
     nb::list out;
     for_each_part(value, [&](int, const auto& part) { out.append(unfill(part)); });
     return out;
-  } else if constexpr (IsFixedList<T>::value) {
+  } else if constexpr (IS_FIXED_LIST<T>) {
     nb::list out;
     for (int32_t i = 0; i < value.count; ++i) out.append(unfill(value.items[i]));
     return out;

@@ -170,8 +170,8 @@ inline constexpr int MAX_REPEATS = 12;
 /// One step of the physics. All members of the group call it with the same arguments.
 ///
 /// order    slots of the `count` living bodies. Everything is done in this order, so that results do not depend on
-///          which slots are used. After a change of the order, of circles, walls or positions, the caller calls
-///          `mark_stale`.
+///          which slots are used. The caller calls `mark_stale` after a change of the order, of circles, walls or
+///          positions.
 /// force    acts in the first substep
 /// fault    neighbor_overflow; not_finite; contact_outside_skin if even a skin 2^12 times as wide is not enough.
 ///          The bodies are then as they were before the step.

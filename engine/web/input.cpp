@@ -9,11 +9,6 @@
 namespace hedon {
 namespace {
 
-template <class T>
-struct IsFixedList : std::false_type {};
-template <class T, int N>
-struct IsFixedList<FixedList<T, N>> : std::true_type {};
-
 /// The settings that have not been read yet, and the first error.
 class Lines {
  public:
@@ -90,7 +85,7 @@ void fill(Lines& settings, const std::string& path, T& out) {
     out = to_number<T>(settings, path, settings.take(path));
   } else if constexpr (Pair<T>) {
     for_each_part(out, [&](int i, auto& part) { fill(settings, path + "[" + std::to_string(i) + "]", part); });
-  } else if constexpr (IsFixedList<T>::value) {
+  } else if constexpr (IS_FIXED_LIST<T>) {
     const auto place = [&](int32_t i) { return path + "[" + std::to_string(i) + "]"; };
     const auto present = [&](int32_t i) {
       return settings.has(place(i)) || settings.any(place(i) + ".") || settings.any(place(i) + "[");
