@@ -1,4 +1,4 @@
-"""Driven discs without food, crowded, in arenas of different sizes."""
+"""Crowds of driven discs without food, in arenas of different sizes."""
 
 import math
 from typing import Any
@@ -18,7 +18,7 @@ from hedon.config.schema.species import ONLY
 SIZES = (150, 2_000, 20_000)
 """Numbers of discs: as many as agents in the baseline, and 13 and 130 times as many."""
 AREA = 700.0
-"""Area per disc [u²]: discs of the usual radius cover 45 % of it, so that one in three touches another."""
+"""Area per disc [u²]: discs of the usual radius cover 45 % of it."""
 PIECE_STEPS = 20
 """Steps after which motor forces change."""
 PIECES = 20
@@ -66,7 +66,7 @@ def _rows(plan: Plan, discs: int, pieces: int) -> list[Row]:
 
 
 def _side(discs: int, radius: float) -> float:
-    """Side of the square arena [u]; there is room for a few discs, too."""
+    """Side of the square arena [u], at least wide enough for a few discs."""
     return max(math.sqrt(discs * AREA), 8 * radius)
 
 
