@@ -38,7 +38,7 @@ def measure(plan: Plan, _: Calibration) -> list[Row]:
 def _rows(plan: Plan, discs: int, pieces: int) -> list[Row]:
     config = plan.config()
     motor = config.species[ONLY].motor
-    scenes = {threads: _scene(plan, discs) for threads in plan.threads}
+    scenes = {threads: make_scene(plan, discs) for threads in plan.threads}
     times: dict[int, list[float]] = {threads: [] for threads in plan.threads}
     rng = np.random.default_rng(1)
     for _ in range(pieces):
@@ -50,7 +50,7 @@ def _rows(plan: Plan, discs: int, pieces: int) -> list[Row]:
     for threads, state in states.items():
         require_finite(f"{discs} discs, {threads} threads", state)
         same = np.array_equal(state, states[plan.threads[0]])
-        side = _side(discs, config.species[ONLY].body.radius)
+        side = side_of(discs, config.species[ONLY].body.radius)
         require(bool(((state[:2] > 0) & (state[:2] < side)).all()), f"{discs} discs: some are outside the walls")
         require(same, f"{discs} discs: the state at the end differs between {threads} threads and {plan.threads[0]}")
     return [
@@ -65,16 +65,16 @@ def _rows(plan: Plan, discs: int, pieces: int) -> list[Row]:
     ]
 
 
-def _side(discs: int, radius: float) -> float:
+def side_of(discs: int, radius: float) -> float:
     """Side of the square arena [u], at least wide enough for a few discs."""
     return max(math.sqrt(discs * AREA), 8 * radius)
 
 
-def _scene(plan: Plan, discs: int) -> Any:
+def make_scene(plan: Plan, discs: int) -> Any:
     """Discs at rest at random places of a grid, with random headings."""
     config = plan.config()
     body = config.species[ONLY].body
-    side = _side(discs, body.radius)
+    side = side_of(discs, body.radius)
     across = math.ceil(math.sqrt(1.2 * discs))
     places = np.linspace(3 * body.radius, side - 3 * body.radius, across)
     rng = np.random.default_rng(2)

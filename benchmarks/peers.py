@@ -1,11 +1,11 @@
 """hedon and programs that do a part of its work, in turns, each on one core: `python -m benchmarks.peers`.
 
-The parts are learning (a population of PPO learners in JAX), rigid bodies (pymunk, which is Chipmunk) and driven worlds
-(the simple spread of mpe2, formerly in PettingZoo, and of JaxMARL). The development packages include JAX and pymunk.
-mpe2 is used if it is there; JaxMARL needs an interpreter that has it:
+The parts are learning (a population of PPO learners in JAX), rigid bodies (pymunk, which is Chipmunk, and Box2D) and
+driven worlds (the simple spread of mpe2, formerly in PettingZoo, and of JaxMARL). The development packages include JAX
+and pymunk. pyb2d3 (Box2D) and mpe2 are used if they are there; JaxMARL needs an interpreter that has it:
 
     python -m venv /tmp/jaxmarl && /tmp/jaxmarl/bin/pip install "jax[cpu]" jaxmarl
-    uv run --with mpe2 python -m benchmarks.peers --jaxmarl /tmp/jaxmarl/bin/python --json peers.json
+    uv run --with mpe2 --with pyb2d3 python -m benchmarks.peers --jaxmarl /tmp/jaxmarl/bin/python --json peers.json
 
 JAX and JaxMARL run as their users run them: many learners or worlds by `vmap`, many steps by `scan`, compiled before
 the clock starts. The best of five turns counts, since other programs only slow things down.
@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 
 import hedon
-from benchmarks import network, physics
+from benchmarks import box2d, network, physics
 from benchmarks.measure import seconds_of
 from benchmarks.plan import make_plan
 from hedon import _engine
@@ -230,7 +230,7 @@ def main() -> None:
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})  # child processes inherit it
     parts = {
         "updates/s": update_rates(),
-        "body-steps/s": body_rates(),
+        "body-steps/s": body_rates() | box2d.rates(make_plan("appetite")),
         "agent-steps/s": world_rates(options.jaxmarl),
     }
     rates: dict[str, dict[str, list[float]]] = {unit: {name: [] for name in part} for unit, part in parts.items()}
