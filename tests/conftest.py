@@ -1,13 +1,18 @@
 """Shared by all tests: a fixture that writes a config file, and a test order that keeps all workers busy."""
 
+import gc
 import os
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from hedon.cli.start import OBJECTS_BEFORE_COLLECTION
+
 # The threads of NumPy's BLAS spin while they wait for one another, on processors that other workers could use.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# As in the command: libraries and tests make many objects that stay, which Python would search for garbage too often.
+gc.set_threshold(OBJECTS_BEFORE_COLLECTION)
 
 TESTS = Path(__file__).parent
 LONGEST = (
