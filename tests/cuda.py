@@ -2,8 +2,9 @@
 committed tables.
 
 Usage: `python tests/cuda.py [--write]`, with the compiler from the package `nvidia-cuda-nvcc`. `--variants` checks all
-kernel variants instead of the one in the library. No device is needed or used. Code is recompiled only if the engine's
-sources or the compiler have changed, which takes two minutes per variant.
+kernel variants instead of the one in the library. No device is needed or used. Compiling takes two minutes per variant,
+so the library's kernels are compiled only if their sources, the compiler or the tables are not those from which the
+tables were last written, and any kernels only if they are not in `build/cuda`.
 """
 
 import hashlib
@@ -25,6 +26,9 @@ BUILT = ROOT / "build" / "cuda"
 TABLE = ROOT / "tests" / "data" / "cuda_kernels.json"
 COSTS = ROOT / "tests" / "data" / "cuda_cost.json"
 VARIANTS = ROOT / "tests" / "data" / "cuda_variants.json"
+DIGESTS = ROOT / "tests" / "data" / "cuda_tables.sha256"
+"""Digests of the library's two tables and of all that they were made from."""
+SOURCE = ROOT / "engine" / "cuda" / "device.cu"
 COST_SLACK = 0.15
 # Limits of one multiprocessor of compute capability 9.0. Source: CUDA C++ Programming Guide, technical specifications.
 REGISTERS, RESIDENT_THREADS, SHARED_BYTES, SHARED_RESERVED = 65536, 2048, 228 * 1024, 1024
@@ -115,29 +119,53 @@ def dearer(found: dict[str, dict[str, float]], kept: dict[str, dict[str, float]]
     return out
 
 
+def included(source: Path) -> set[Path]:
+    """A source of the engine and all of the engine's files that it includes, directly or not."""
+    found, unread = {source}, [source]
+    while unread:
+        names = re.findall(r'^ *# *include "(.+)"', unread.pop().read_text(), re.MULTILINE)
+        new = {build.ENGINE / name for name in names} - found
+        found |= new
+        unread += new
+    return found
+
+
+def options_of(variant: str) -> list[str]:
+    """The compiler's options for a variant, besides those of the library."""
+    return ["-cubin", "-lineinfo", "-Xptxas=-v", "-Werror=all-warnings", build.variant_option(variant)]
+
+
+def inputs(nvcc: Path, variant: str) -> str:
+    """A digest of all that the machine code of a variant depends on."""
+    version = subprocess.run([str(nvcc), "--version"], capture_output=True, text=True, check=True).stdout
+    digest = hashlib.sha256(repr((build.OPTIONS, options_of(variant), version)).encode())
+    for path in sorted(included(SOURCE)):
+        digest.update(repr((path.relative_to(ROOT).as_posix(), path.read_bytes())).encode())
+    return digest.hexdigest()
+
+
+def digests(nvcc: Path) -> str:
+    """The content of `DIGESTS` as it should be: a line for the inputs, and one for each table of the library."""
+    scripts = [Path(__file__), Path(count_costs.__code__.co_filename)]
+    kernels = inputs(nvcc, build.variants()[0]).encode()
+    contents = {"inputs": kernels + b"".join(path.read_bytes() for path in scripts)}
+    contents |= {path.name: path.read_bytes() for path in (TABLE, COSTS)}
+    return "".join(f"{hashlib.sha256(content).hexdigest()}  {name}\n" for name, content in contents.items())
+
+
 def compile_kernels(nvcc: Path, variant: str) -> Path:
     """A folder with the machine code of all kernels, `device.cubin`, and the compiler's output, `report.txt`.
 
     Raises:
         build.BuildError: The compiler fails or gives a warning.
     """
-    source = ROOT / "engine" / "cuda" / "device.cu"
-    options = build.command(
-        nvcc, "-cubin", "-lineinfo", "-Xptxas=-v", "-Werror=all-warnings", build.variant_option(variant)
-    )
-    version = subprocess.run([str(nvcc), "--version"], capture_output=True, text=True, check=True).stdout
-    digest = hashlib.sha256(repr((options, version)).encode())
-    for path in sorted((ROOT / "engine").rglob("*")):
-        if path.suffix in {".h", ".cu"}:
-            digest.update(repr((str(path), path.read_bytes())).encode())
-    kept = BUILT / variant / digest.hexdigest()[:16]
+    kept = BUILT / variant / inputs(nvcc, variant)[:16]
     binary, report = kept / "device.cubin", kept / "report.txt"
     if not report.exists():
         shutil.rmtree(BUILT / variant, ignore_errors=True)
         kept.mkdir(parents=True)
-        done = subprocess.run(
-            [*options, "-o", str(binary), str(source)], stderr=subprocess.PIPE, text=True, check=False
-        )
+        call = build.command(nvcc, *options_of(variant), "-o", str(binary), str(SOURCE))
+        done = subprocess.run(call, stderr=subprocess.PIPE, text=True, check=False)
         if done.returncode != 0:
             raise build.BuildError(done.stderr)
         report.write_text(done.stderr)  # written last: marks the folder as complete
@@ -145,7 +173,12 @@ def compile_kernels(nvcc: Path, variant: str) -> Path:
 
 
 def check_default(nvcc: Path, write: bool) -> list[str]:
-    """Compiles the library's kernels and returns how they differ from the tables, after updating these if asked to."""
+    """Compiles the library's kernels, if anything has changed since the tables were written, and returns how they differ
+    from the tables, after updating these if asked to.
+    """
+    if not write and DIGESTS.read_text() == digests(nvcc):
+        print("cuda: the tables were written from these sources by this compiler")
+        return []
     default = build.variants()[0]
     folder = compile_kernels(nvcc, default)
     found = read_kernels((folder / "report.txt").read_text(), launch_sizes(default, folder))
@@ -153,6 +186,7 @@ def check_default(nvcc: Path, write: bool) -> list[str]:
     if write:
         TABLE.write_text(json.dumps(found, indent=2) + "\n")
         COSTS.write_text(json.dumps(costs, indent=2) + "\n")
+        DIGESTS.write_text(digests(nvcc))
     clocks = sum(cost["clocks"] for cost in costs.values())
     size = (folder / "device.cubin").stat().st_size / 1e6
     print(f"cuda: {len(found)} kernels for sm_90, {size:.1f} MB; {clocks:,.0f} clocks for 64 samples of an update")
