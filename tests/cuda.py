@@ -173,8 +173,8 @@ def compile_kernels(nvcc: Path, variant: str) -> Path:
 
 
 def check_default(nvcc: Path, write: bool) -> list[str]:
-    """Compiles the library's kernels, if anything has changed since the tables were written, and returns how they differ
-    from the tables, after updating these if asked to.
+    """Compiles the library's kernels, unless nothing has changed since their tables were written, and returns how they
+    differ from the tables, after updating these if asked to.
     """
     if not write and DIGESTS.read_text() == digests(nvcc):
         print("cuda: the tables were written from these sources by this compiler")

@@ -29,8 +29,8 @@ WRONG: dict[str, tuple[Callable[[Any], Any], str]] = {
     "a seed as a text": (lambda w: w.reset(seed="1"), r"seed = '1': must be a whole number"),
     "half a seed in a list": (lambda w: w.reset(seed=[0.5]), r"seeds = 0\.5: must be a whole number"),
     "a seed too many": (lambda w: w.reset(seed=[1, 2]), "there must be 1, one per world, not 2"),
-    "no number of threads": (lambda w: hedon.make(CONFIG, threads=None), "threads = None: must be a whole number"),
-    "a truth as threads": (lambda w: hedon.make(CONFIG, threads=False), "threads = False: must be a whole number"),
+    "no number of threads": (lambda w: make(CONFIG, threads=None), "threads = None: must be a whole number"),
+    "a truth as threads": (lambda w: make(CONFIG, threads=False), "threads = False: must be a whole number"),
     "an unknown option": (
         lambda w: w.reset(options={"mask": [True]}),
         "options: there is no 'mask'; there is 'reset_m",

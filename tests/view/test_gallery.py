@@ -172,13 +172,14 @@ def test_the_exercises_name_only_controls_that_the_article_has():
 def test_the_second_exercise_shows_what_a_child_inherits():
     """Children inherit their parents' feelings; a new network starts without anything another one has learned."""
     world = Simulation(load_config(SCENES / "family.toml"), seeds=[1])
-    lives = {}  # parent and feeling of every agent, including the dead
+    lives, living = {}, []  # parent and feeling of every agent, including the dead
     for _ in range(2000):
         world.run(1)
         agents = world.worlds[0].agents()
         columns = (agents["agent_id"], agents["parent_id"], agents["genome"][:, 0])
         lives |= {own: rest for own, *rest in zip(*(each.tolist() for each in columns), strict=True)}
-    alive = [lives[own] for own in agents["agent_id"].tolist() if lives[own][0] >= 0]
+        living = agents["agent_id"].tolist()
+    alive = [lives[own] for own in living if lives[own][0] >= 0]
     assert len(alive) > 20, "enough for a class"
     feeling = np.corrcoef([(own, lives[parent][1]) for parent, own in alive], rowvar=False)[0, 1]
     text = " ".join((TEACHING / "README.md").read_text().split())

@@ -86,8 +86,8 @@ def test_a_live_world_shows_where_its_agents_ate_and_were(watch):
         watched.page.locator("#heat").select_option("positions")
         watched.until(f"{DONE} === hedon.source.frames.length")
         places = watched.get("hedon.source.frames.map((each) => [[...each.x], [...each.y]])")
-        were = [np.concatenate([each[axis] for each in places]) for axis in (0, 1)]
-        assert watched.get(COUNTS) == counted(*were, arena(watched))
+        x, y = (np.concatenate([each[axis] for each in places]) for axis in (0, 1))
+        assert watched.get(COUNTS) == counted(x, y, arena(watched))
         more = watched.get("hedon.heat.moments")
         run_live(watched, steps + 50)
         watched.until(f"hedon.heat.moments > {more} && {DONE} === hedon.source.frames.length")

@@ -232,9 +232,10 @@ def test_csv_has_the_numbers_of_the_table(recorded, watch):
             assert table.columns[: 2 + len(names)] == ["seed", "step", *names]
             for name in ["seed", "step", *names]:
                 assert table[name].to_list() == rows[name].to_list(), name
-        assert table.columns[3:] == ["drift_low", "drift_high"]
+        weight = pl.read_csv(io.BytesIO(saved(watched, "CSV of weight of poison")[0]))
+        assert weight.columns[3:] == ["drift_low", "drift_high"]
         high, low = watched.get("hedon.plots.plots[2].chart.data.slice(-2).map((column) => [...column])")
-        assert (table["drift_low"].to_list(), table["drift_high"].to_list()) == (low, high)
+        assert (weight["drift_low"].to_list(), weight["drift_high"].to_list()) == (low, high)
 
 
 def test_csv_has_a_row_for_each_species(species, watch):

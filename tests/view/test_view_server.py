@@ -235,6 +235,7 @@ def test_a_chosen_port_has_the_same_address_after_a_restart(cache):
     for _ in range(2):
         command = [*START, "view", "--live", "small", "--port", str(port), "--no-open"]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as running:
+            assert running.stdout is not None
             links.append(running.stdout.readline().split()[-1])
             connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
             connection.request("GET", links[0].split(str(port))[1])
@@ -358,7 +359,7 @@ def test_a_browser_says_whether_it_takes_gzip(accepted, takes):
 def test_each_file_is_compressed_once(server, monkeypatch):
     calls = []
     pack = gzip.compress
-    monkeypatch.setattr(compressed.gzip, "compress", lambda *given, **how: calls.append(1) or pack(*given, **how))
+    monkeypatch.setattr(gzip, "compress", lambda *given, **how: calls.append(1) or pack(*given, **how))
     bodies = {ask(server, f"/{server.token}/assets/index.js", encoding="gzip")[1] for _ in range(3)}
     assert (len(calls), len(bodies)) == (1, 1)
     path = Path(page_files()["assets/index.js"])

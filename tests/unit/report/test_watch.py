@@ -1,6 +1,7 @@
 """The report says how to watch a run, and at which step its largest change starts."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import polars as pl
 
@@ -9,7 +10,7 @@ from hedon.report.watch import WeightChange, how_to_watch, largest_change
 STEPS = [100 * (i + 1) for i in range(40)]
 
 
-def recorded(rows, seeds=(3, 4)):
+def recorded(rows, seeds=(3, 4)) -> Any:
     """A run with a population table."""
     return SimpleNamespace(
         population=lambda skip_damaged: rows, reward_names=("w_food", "w_action"), manifest=SimpleNamespace(seeds=seeds)
@@ -25,7 +26,9 @@ def test_the_largest_change_is_found_over_a_twentieth_of_the_records():
     flat = [0.0] * 39 + [0.2]
     run = recorded(pl.concat([population(3, flat, jump), population(4, flat, flat)]))
     assert largest_change(run, 3) == WeightChange(3, 2000, 2200, "w_action")
-    assert largest_change(run, 4).step == 3800
+    late = largest_change(run, 4)
+    assert late is not None
+    assert late.step == 3800
     sentence = how_to_watch(run, 3)
     assert "With --step 2000 --seed 3, it opens at the start of the largest change in the mean of w_action" in sentence
     assert "--seed" not in how_to_watch(recorded(population(3, flat, jump), (3,)), 3)

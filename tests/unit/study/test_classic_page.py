@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -24,7 +25,12 @@ def answers(*tests) -> list[str]:
     return verdict_table("made_up", tests).rows["answer"].to_list()
 
 
-def number(value: float, digits: int = 3) -> str:
+def interval(values) -> Any:
+    """`mean_interval`, of enough values that it has bounds."""
+    return mean_interval(values)
+
+
+def number(value: Any, digits: int = 3) -> str:
     return f"{value:.{digits}f}".replace("-", "\N{MINUS SIGN}")
 
 
@@ -40,7 +46,7 @@ def test_the_page_on_lifespans_has_the_numbers_of_its_tables() -> None:
     (outside,) = [row for row in control if row["low"] > 0 or row["high"] < 0]
     assert f"shows a larger rise ({outside['effect']:.3f})" in page
     for row in pl.read_csv(RESULTS / "lifespan" / "hazards.csv").iter_rows(named=True):
-        bounds = mean_interval(worlds.filter(pl.col("hazard") == row["hazard"])["slope"].to_list())
+        bounds = interval(worlds.filter(pl.col("hazard") == row["hazard"])["slope"].to_list())
         assert (row["slope"], row["low"], row["high"]) == pytest.approx((bounds.mean, bounds.low, bounds.high))
         slope_text = f"{row['slope']:.3f} ({row['low']:.3f} … {row['high']:.3f})"
         children = ", ".join(f"{value:.2f}" for value in list(row.values())[8:])
@@ -59,12 +65,12 @@ def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
     assert f"slope of relative intake of food is {slope.effect:.2f} ({slope.low:.2f} … {slope.high:.2f})" in page
     assert f"smaller by {difference.effect:.2f} ({difference.low:.2f} … {difference.high:.2f})" in page
     pieces = worlds.with_columns(pl.col("slope") * pl.col("food")).to_dicts()
-    of_children = mean_interval(pair_differences(rows, (GATED, FREE), "children slope"))
+    of_children = interval(pair_differences(rows, (GATED, FREE), "children slope"))
     assert f"two cases is {of_children.mean:.2f} ({of_children.low:.2f} … {of_children.high:.2f}; not" in page
     low, high = (pl.read_csv(RESULTS / "optimal-reward" / "conditions.csv")["unfinished"] * 100).to_list()
     assert f"{low:.0f} % of founders are then alive if food needs water, {high:.0f} % if not" in page
-    rates = [mean_interval(by_seed(rows, condition, "rate slope").values()) for condition in (GATED, FREE)]
-    rates.append(mean_interval(pair_differences(rows, (GATED, FREE), "rate slope")))
+    rates = [interval(by_seed(rows, condition, "rate slope").values()) for condition in (GATED, FREE)]
+    rates.append(interval(pair_differences(rows, (GATED, FREE), "rate slope")))
     first, second, change = (f"{bounds.mean:.2f} ({bounds.low:.2f} … {bounds.high:.2f})" for bounds in rates)
     assert f"are {first} and {second}, a difference of {change}" in page
     for values, text in (
@@ -72,7 +78,7 @@ def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
         (list(by_seed(pieces, FREE, "slope").values()), "and {} if not"),
         (pair_differences(pieces, (GATED, FREE), "slope"), "if not, {} more"),
     ):
-        bounds = mean_interval(values)
+        bounds = interval(values)
         assert text.format(f"{bounds.mean:.1f} ({bounds.low:.1f} … {bounds.high:.1f})") in page
     neutral = [name for name in worlds.columns if name.startswith("neutral_")]
     outside = [row["test"] for row in optimal.control_rows(rows, neutral) if row["low"] > 0 or row["high"] < 0]
@@ -80,7 +86,7 @@ def test_the_page_on_the_optimal_reward_has_the_numbers_of_its_tables() -> None:
     for row in pl.read_csv(RESULTS / "optimal-reward" / "conditions.csv").iter_rows(named=True):
         intervals = []
         for name, key in (("slope", "slope"), ("children slope", "children slope")):
-            bounds = mean_interval(by_seed(rows, row["condition"], key).values())
+            bounds = interval(by_seed(rows, row["condition"], key).values())
             assert row[name] == pytest.approx(bounds.mean)
             intervals.append(f"{bounds.mean:.2f} ({bounds.low:.2f} … {bounds.high:.2f})")
         intake = list(row.values())[-4:]
@@ -106,7 +112,7 @@ def test_the_page_on_two_needs_has_the_numbers_of_its_tables() -> None:
     assert f"by {number(unplanned.effect)} ({number(unplanned.low)} … {number(unplanned.high)}) more than" in page
     assert f"from {number(worlds['change'].min(), 2)} to {number(worlds['change'].max(), 2)}" in page
     for row in pl.read_csv(RESULTS / "two-needs" / "conditions.csv").iter_rows(named=True):
-        bounds = mean_interval(by_seed(rows, row["condition"], "change").values())
+        bounds = interval(by_seed(rows, row["condition"], "change").values())
         assert row["change"] == pytest.approx(bounds.mean)
         change = f"{number(bounds.mean)} ({number(bounds.low)} … {number(bounds.high)})"
         eaten = [
@@ -118,7 +124,7 @@ def test_the_page_on_two_needs_has_the_numbers_of_its_tables() -> None:
         )
         worlds_of = worlds.filter(condition=row["condition"])
         for kind in ("food", "water"):
-            less = mean_interval((worlds_of[f"reducers {kind}"] - worlds_of[f"eaters {kind}"]).to_list())
+            less = interval((worlds_of[f"reducers {kind}"] - worlds_of[f"eaters {kind}"]).to_list())
             assert less.mean < 0
             if (row["condition"], kind) == (ADDITIVE, "food"):
                 assert f"{number(less.mean, 2)} ({number(less.low, 2)} … {number(less.high, 2)})" in page
@@ -133,7 +139,7 @@ def test_the_page_on_mating_has_the_numbers_of_its_tables() -> None:
     for start, share in ((0.05, 0.0), (0.95, 1.0)):
         some = worlds.filter(pl.col("foragers") == start)
         rare_one = (some["end"] - some["start"]) * (1 if start < 0.5 else -1)
-        bounds = mean_interval(rare_one.to_list())
+        bounds = interval(rare_one.to_list())
         change = f"{'+' if bounds.mean > 0 else ''}{number(bounds.mean)} ({number(bounds.low)} … {number(bounds.high)}"
         assert f"changes by {change}" in page
         lost = int((some["end"] == share).sum())
@@ -162,7 +168,7 @@ def test_the_page_on_mating_has_the_numbers_of_its_tables() -> None:
     (half,) = line.filter((pl.col("share") - 0.5).abs() < 1e-9).to_dicts()
     assert f"(+{half['line']:.3f} per generation at a half, {half['low']:.3f} … {half['high']:.3f})" in page
     overall = worlds.group_by("seed").agg((pl.col("end") - pl.col("start")).mean())["end"]
-    bounds = mean_interval(overall.to_list())
+    bounds = interval(overall.to_list())
     assert f"increase by {bounds.mean:.3f} ({bounds.low:.3f} … {bounds.high:.3f})" in page
     for row in pl.read_csv(RESULTS / "mating" / "shares.csv").iter_rows(named=True):
         some = worlds.filter(pl.col("foragers") == row["share at the start"])

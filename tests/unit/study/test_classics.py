@@ -96,7 +96,7 @@ def test_lifespan_and_plasticity_recovers_a_known_effect() -> None:
 
 def test_the_slope_of_relative_fitness_on_a_gene_is_found() -> None:
     genes = np.linspace(-1, 1.5, 20_000)
-    children = np.random.default_rng(4).poisson(2.0 * (1 + 0.3 * genes))
+    children = np.random.default_rng(4).poisson(2.0 * (1 + 0.3 * genes)).astype(float)
     assert fitness_slope(genes, children) == pytest.approx(0.3 / (1 + 0.3 * genes.mean()), abs=0.03)
     assert fitness_slope(genes, np.zeros(20_000)) is None
     assert fitness_slope(genes, np.where(genes > 0, np.nan, children)) is None
