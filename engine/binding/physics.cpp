@@ -99,8 +99,8 @@ class Scene {
     shared.size = threads;
     const auto member = [&](int rank) {
       Team team(shared, rank);
-      for (int i = 0; i < steps && fault_.status == Status::ok; ++i) {
-        physics_step(team, config_, table_, state_, scratch_, order_, count_, force_, recorder_, fault_);
+      for (int i = 0; i < steps; ++i) {
+        if (!physics_step(team, config_, table_, state_, scratch_, order_, count_, force_, recorder_, fault_)) return;
       }
     };
     std::vector<std::thread> others;
