@@ -27,8 +27,8 @@ class Alone {
   }
 
   /// Calls body(i) for i in [0, count), one group of consecutive i after another. Within the group with number
-  /// `ordered`, the last one if it exists, each i waits for the one before it; within the others, none does. start   of
-  /// each group, and `count` behind them
+  /// `ordered`, the last one if it exists, each i waits for the one before it; within the others, none does. The first
+  /// argument is the start of each group, and `count` behind them.
   template <class Body>
   HEDON_INLINE void each_by_group(const int32_t*, int32_t count, int32_t, Body&& body) const {
     each(0, count, body);

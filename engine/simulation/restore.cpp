@@ -53,6 +53,12 @@ bool read_networks(Inspector& in, SavedExtent& extent, const std::vector<int64_t
   return true;
 }
 
+/// Largest count that a checkpoint may contain: sums of several do not overflow.
+constexpr double MOST_LONG = 0x1p53;
+
+/// The same for 32 bits: what is left is more than the births of any window.
+constexpr double MOST = INT32_MAX - 0x1p24;
+
 /// Reads how many rows the arrays have. Slots are numbered as the world will assign them to the living agents.
 bool read_extent(Inspector& in, SavedExtent& extent) {
   const WorldShape& shape = *in.world_.shape;
@@ -60,8 +66,7 @@ bool read_extent(Inspector& in, SavedExtent& extent) {
       !in.has<int32_t>("food.slot", {-1}) || !in.within<int64_t>("head.step", 0, UINT32_MAX) ||
       !in.within<int32_t>("head.living_count", 0, shape.capacity) ||
       !in.within<int32_t>("food.slot", 0, shape.foods - 1) || !in.has<int32_t>("head.births_in_window", {1}) ||
-      !in.has<int32_t>("head.eaten_food_count", {1}) ||
-      !in.within<int32_t>("head.births_in_window", 0, INT32_MAX - 1.0) ||
+      !in.has<int32_t>("head.eaten_food_count", {1}) || !in.within<int32_t>("head.births_in_window", 0, MOST) ||
       !in.within<int32_t>("head.eaten_food_count", 0, static_cast<double>(in.world_.state.eaten_food.count)) ||
       !in.has<int64_t>("life.birth_step", {in.numbers<int32_t>("head.living_count")[0]})) {
     return false;
@@ -82,7 +87,7 @@ bool read_extent(Inspector& in, SavedExtent& extent) {
   return in.within<int32_t>("head.births_in_window", 0, shape.newborns);
 }
 
-/// Checks that all arrays are present, that there are no others, and that all numbers are finite.
+/// Checks that all arrays are present, that there are no others, and that all numbers are finite and none is too large.
 bool check_arrays(Inspector& in, const SavedExtent& extent, const Checkpoint& checkpoint) {
   size_t known = 1;
   bool good = true;
@@ -90,6 +95,7 @@ bool check_arrays(Inspector& in, const SavedExtent& extent, const Checkpoint& ch
     ++known;
     good = good && in.has<T>(name, rows.shape());
     if constexpr (std::is_floating_point_v<T>) good = good && in.finite<T>(name);
+    if constexpr (std::is_same_v<T, int64_t>) good = good && in.within<T>(name, -1, MOST_LONG);
   });
   for (int kind = 0; kind < 3; ++kind, known += 2) {
     good = good && in.has<int32_t>(PAIR_NAMES[kind], {-1, 2});
@@ -118,7 +124,6 @@ bool check_life(Inspector& in) {
   const std::vector<int32_t> ids = in.numbers<int32_t>("life.agent_id");
   const double nobody = ids.empty() ? 1 : 0;
   const double last_id = ids.empty() ? 0 : ids.back();
-  constexpr double MOST = INT32_MAX - 1.0;
   constexpr double LARGEST = std::numeric_limits<float>::max();
   const double turn = static_cast<double>(TWO_PI_F);
   if (!rises(ids, true)) return in.refuse("life.agent_id is out of order");
@@ -138,7 +143,7 @@ bool check_life(Inspector& in) {
          (in.world_.shape->last == 0 || in.within<float>("last", -LARGEST, LARGEST)) &&
          (!in.world_.shape->counts_births || in.within<int32_t>("births", 0, MOST)) &&
          (!in.world_.shape->learning ||
-          (in.within<int64_t>("updates", 0, 0x1p62) && in.within<float>("second_moment", 0, LARGEST) &&
+          (in.within<int64_t>("updates", 0, MOST_LONG) && in.within<float>("second_moment", 0, LARGEST) &&
            in.zero_until_counted("first_moment", "updates") && in.zero_until_counted("second_moment", "updates"))) &&
          in.within<float>("body.x", 0, config.arena.width) && in.within<float>("body.y", 0, config.arena.height) &&
          in.within<float>("body.angle", -turn, turn);
@@ -184,7 +189,7 @@ bool check_food(Inspector& in, const SavedExtent& extent) {
   }
   const bool eaten =
       world.state.eaten_food.count == 0 || in.within<int32_t>("eaten_food.kind", 0, world.shape->kinds - 1);
-  return eaten && in.within<int64_t>("food_stock.eaten", 0, 0x1p62) &&
+  return eaten && in.within<int64_t>("food_stock.eaten", 0, MOST_LONG) &&
          in.within<float>("food.x", 0, world.config->arena.width) &&
          in.within<float>("food.y", 0, world.config->arena.height);
 }

@@ -40,6 +40,8 @@ BOUNDED = {  # array: a value that no world has
     "head.births_before": -1,
     "head.eaten_food_count": -1,
     "eaten_food.kind": 1,
+    "counters.births": 2**54,
+    "counters.agent_steps": 2**62,
     "newborn.agent_id": 0,
     "newborn.parent": 30_000,
     "food.slot": 10_000,
@@ -101,6 +103,15 @@ def test_a_value_out_of_bounds_is_refused(saved, target, name):
     spoiled = saved[name].copy()
     spoiled.flat[PLACE.get(name, -1)] = BOUNDED[name]
     refused(target, saved | {name: spoiled}, name.replace("impulse", "pair"))
+
+
+def test_sums_of_the_largest_counts_do_not_overflow(saved, target):
+    """The sanitizer for undefined behavior would end the process."""
+    counts = {name: np.full_like(saved[name], 2**53) for name in ("counters.births", "counters.agent_steps")}
+    target.engine.restore(0, saved | counts)
+    with pytest.raises(EngineError, match="counts_inconsistent"):
+        target.run(48)  # past the audit at the end of the window
+    target.engine.restore(0, saved)
 
 
 @pytest.mark.parametrize("name", ["first_moment", "second_moment"])
