@@ -60,11 +60,20 @@ def main(preset: str, arguments: list[str]) -> int:
             return run_windows(preset, OPTIONS, Path(folder))
     module = build(preset)
     libraries = [runtime(name) for name in (*RUNTIMES[preset], "libstdc++.so")]
-    environment = os.environ | OPTIONS | {"LD_PRELOAD": " ".join(libraries), "HEDON_SANITIZED": str(module)}
+    # In files, since pytest keeps what workers print, and loses it when they end.
+    report = module.with_name("report")
+    options = {name: f"{value}:log_path={report}" for name, value in OPTIONS.items() if name.endswith("SAN_OPTIONS")}
+    environment = os.environ | OPTIONS | options
+    environment |= {"LD_PRELOAD": " ".join(libraries), "HEDON_SANITIZED": str(module)}
     environment["PYTHONPATH"] = str(ROOT / "tests")
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-p", "sanitized_engine"]
     command += ["--numprocesses", "2", "--dist", "worksteal", *(arguments or TESTS[preset])]
-    return subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+    for old in report.parent.glob("report.*"):
+        old.unlink()
+    code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+    for path in report.parent.glob("report.*"):
+        print(path.read_text(errors="replace"), file=sys.stderr)
+    return code
 
 
 if __name__ == "__main__":
