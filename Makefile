@@ -94,7 +94,7 @@ tools:
 	@echo "uv is not installed: putting it into .uv (for uv commands of your own: export PATH=\"\$$PWD/.uv/bin:\$$PATH\")"
 	@$(PYTHON) -m pip install --quiet --disable-pip-version-check --root-user-action=ignore --target .uv uv
 
-# The library of CUDA devices, for `--device cuda`. The compiler is a package, 350 MB; no device is needed to build.
+# The library of CUDA devices, for `--backend cuda`. The compiler is a package, 350 MB; no device is needed to build.
 cuda: sync
 	$(RUN) --group cuda python engine/cuda/build.py
 

@@ -131,7 +131,7 @@ def included(source: Path) -> set[Path]:
 
 
 def options_of(variant: str) -> list[str]:
-    """The compiler's options for a variant, besides those of the library."""
+    """The compiler's options for a variant, besides `build.OPTIONS`."""
     return ["-cubin", "-lineinfo", "-Xptxas=-v", "-Werror=all-warnings", build.variant_option(variant)]
 
 

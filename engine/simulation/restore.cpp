@@ -53,11 +53,8 @@ bool read_networks(Inspector& in, SavedExtent& extent, const std::vector<int64_t
   return true;
 }
 
-/// Largest count that a checkpoint may contain: sums of several do not overflow.
-constexpr double MOST_LONG = 0x1p53;
-
-/// The same for 32 bits: what is left is more than the births of any window.
-constexpr double MOST = INT32_MAX - 0x1p24;
+/// Largest counts that a checkpoint may contain: sums of several do not overflow, nor does what a window adds.
+constexpr double MOST_LONG = 0x1p53, MOST = INT32_MAX - 0x1p24;
 
 /// Reads how many rows the arrays have. Slots are numbered as the world will assign them to the living agents.
 bool read_extent(Inspector& in, SavedExtent& extent) {
@@ -125,7 +122,6 @@ bool check_life(Inspector& in) {
   const double nobody = ids.empty() ? 1 : 0;
   const double last_id = ids.empty() ? 0 : ids.back();
   constexpr double LARGEST = std::numeric_limits<float>::max();
-  const double turn = static_cast<double>(TWO_PI_F);
   if (!rises(ids, true)) return in.refuse("life.agent_id is out of order");
   const std::vector<int32_t> parents = in.numbers<int32_t>("life.parent_id");
   const std::vector<int32_t> generations = in.numbers<int32_t>("life.generation");
@@ -146,7 +142,7 @@ bool check_life(Inspector& in) {
           (in.within<int64_t>("updates", 0, MOST_LONG) && in.within<float>("second_moment", 0, LARGEST) &&
            in.zero_until_counted("first_moment", "updates") && in.zero_until_counted("second_moment", "updates"))) &&
          in.within<float>("body.x", 0, config.arena.width) && in.within<float>("body.y", 0, config.arena.height) &&
-         in.within<float>("body.angle", -turn, turn);
+         in.within<float>("body.angle", -TWO_PI_F, TWO_PI_F);
 }
 
 /// Bits of touch that a species cannot have.
